@@ -1,0 +1,75 @@
+"""The MuJoCo model of a rig: mjcf/rig.xml with the figures of its settings."""
+
+import math
+
+import mujoco
+
+from bikesim.data import data_path
+from bikesim.errors import InputError
+from bikesim.rider.base import Arms
+from bikesim.rig.settings import RigSettings
+
+
+def rig_spec() -> mujoco.MjSpec:
+    """The drawing and mechanism as they ship, still to be changed. Raises InputError."""
+    path = data_path("mjcf", "rig.xml")
+    try:
+        return mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        raise InputError(f"{path}: {' '.join(str(error).split())}") from None
+
+
+def rig_model(
+    settings: RigSettings, *, inertia: float, arms: Arms, steer_axis_tilt: float, step: float
+) -> mujoco.MjModel:
+    """The compiled model of a rig.
+
+    `inertia` I_δ [kg m²] is the total about the steer axis without the arms, motor rotor included;
+    `arms` come on top of it. `steer_axis_tilt` [rad] of the bicycle, `step` [s] of the physics.
+    """
+    if settings.rotor_inertia >= inertia:
+        raise InputError(
+            f"rig.rotor_inertia = {settings.rotor_inertia} kg m²: must be below the whole inertia "
+            f"about the steer axis, {inertia:.6g} kg m²"
+        )
+    spec = rig_spec()
+    spec.option.timestep = step
+    spec.body("head").quat = [math.cos(steer_axis_tilt / 2), 0, -math.sin(steer_axis_tilt / 2), 0]
+    # Only the moment about the axis acts; three equal ones are always a possible inertia.
+    spec.body("handlebar").inertia = [inertia - settings.rotor_inertia] * 3
+
+    joint = spec.joint("steer")
+    joint.range = [-settings.steer_stop, settings.steer_stop]
+    joint.armature = settings.rotor_inertia + arms.inertia
+    joint.damping[0] = settings.viscous_friction + arms.damping
+    joint.stiffness[0] = arms.stiffness
+    joint.frictionloss = settings.coulomb_friction
+
+    _set_motor(spec.actuator("motor"), settings, step)
+    for name in ("steer_angle", "steer_rate"):
+        _set_sensor(spec.sensor(name), settings, step)
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise InputError(f"rig: MuJoCo refuses the model: {' '.join(str(error).split())}") from None
+
+
+def _set_motor(motor: mujoco.MjsActuator, settings: RigSettings, step: float) -> None:
+    if settings.torque_limit is not None:
+        motor.forcelimited = True
+        motor.forcerange = [-settings.torque_limit, settings.torque_limit]
+    if settings.motor_lag > 0:
+        motor.dyntype = mujoco.mjtDyn.mjDYN_FILTEREXACT
+        motor.dynprm[0] = settings.motor_lag
+    if settings.motor_delay > 0:
+        motor.delay = settings.motor_delay
+        motor.nsample = math.ceil(settings.motor_delay / step - 1e-9)
+
+
+def _set_sensor(sensor: mujoco.MjsSensor, settings: RigSettings, step: float) -> None:
+    if settings.sensor_delay > 0:
+        sensor.delay = settings.sensor_delay
+        sensor.nsample = math.ceil(settings.sensor_delay / step - 1e-9)
+    if settings.sensor_interval > step:
+        sensor.interval = [settings.sensor_interval, 0]
+        sensor.nsample = max(sensor.nsample, 1)
