@@ -1,0 +1,44 @@
+"""What commands print: tables for people, JSON for programs."""
+
+import json
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+
+def print_json(value: Any) -> None:
+    """One JSON document; what is not a finite number becomes null."""
+    json.dump(_finite(value), sys.stdout, indent=2, allow_nan=False)
+    print()
+
+
+def print_table(
+    header: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1
+) -> None:
+    """Columns aligned: the first `left` ones to the left, the others to the right."""
+    widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
+    for row in [header, ["-" * width for width in widths], *rows]:
+        cells = [
+            cell.ljust(width) if i < left else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        print("  ".join(cells).rstrip())
+
+
+def check_output(path: Path, *, force: bool) -> None:
+    """Refuse a file that is there already, or a place where none can be, before the work."""
+    from bikesim.record.output import output_path
+
+    output_path(path, force=force)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(inner) for inner in value]
+    return value

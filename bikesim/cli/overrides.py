@@ -1,0 +1,55 @@
+"""A scenario from its file and what was said beside it."""
+
+import tomllib
+from typing import TYPE_CHECKING, Any
+
+from bikesim.errors import InputError
+from bikesim.experiment.scenario import Scenario, read_toml
+
+if TYPE_CHECKING:
+    from bikesim.cli.run import Run
+
+_PLAIN = "bicycle speed law rider rig duration seed gravity period physics_step".split()
+
+
+def scenario_from(options: "Run") -> Scenario:
+    """The file's keys, replaced by those of the command line. Raises InputError."""
+    keys = {} if options.scenario is None else read_toml(options.scenario)
+    for name in _PLAIN:
+        if (value := getattr(options, name)) is not None:
+            keys[name] = value
+    if options.speed is not None:
+        keys.pop("speed_profile", None)
+    if options.roll is not None:
+        _put(keys, ["start", "roll_deg"], options.roll)
+    if options.push:
+        keys["pushes"] = [_push(text) for text in options.push]
+    for text in options.set:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise InputError(f"--set {text}: must be KEY=VALUE, such as rider.visual_delay=0.3")
+        _put(keys, [part.strip() for part in name.split(".")], _value(value.strip()))
+    return Scenario(**keys)
+
+
+def _put(keys: dict[str, Any], path: list[str], value: Any) -> None:
+    for name in path[:-1]:
+        inner = keys.get(name, {})
+        # A rider or a rig may stand there by its name alone.
+        keys[name] = keys = {"name": inner} if isinstance(inner, str) else dict(inner)
+    keys[path[-1]] = value
+
+
+def _value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _push(text: str) -> dict[str, float]:
+    time, _, impulse = text.partition(":")
+    try:
+        return {"time": float(time), "impulse": float(impulse)}
+    except ValueError:
+        raise InputError(f"--push {text}: must be TIME:IMPULSE in s and N s, such as 5:10") from None

@@ -1,0 +1,41 @@
+"""bikesim plot"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from bikesim.cli.output import check_output
+
+
+@dataclass(frozen=True)
+class Plot:
+    """Draw records: roll, steer, torques and path over time; several runs on the same axes."""
+
+    records: tyro.conf.Positional[tuple[Path, ...]]
+    """Run files, one or more."""
+    output: Annotated[
+        Path | None,
+        tyro.conf.arg(
+            aliases=["-o"],
+            help="The figure, .png, .pdf or .svg (default: the first record's name with .png).",
+            help_behavior_hint="",
+        ),
+    ] = None
+    force: bool = False
+    """Replace a figure that is there already."""
+
+    def __call__(self) -> int:
+        from bikesim.errors import InputError
+        from bikesim.record.reader import open_run
+        from bikesim.report.run_figure import run_figure
+        from bikesim.report.style import save
+
+        if not self.records:
+            raise InputError("plot: name at least one record")
+        path = self.output or self.records[0].with_suffix(".png")
+        check_output(path, force=self.force)
+        save(run_figure([open_run(record) for record in self.records]), path)
+        print(f"figure  {path}")
+        return 0

@@ -1,0 +1,111 @@
+"""bikesim run"""
+
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+from bikesim.cli.output import check_output, print_json
+from bikesim.cli.overrides import scenario_from
+from bikesim.errors import InputError
+from bikesim.experiment.scenario import Scenario
+
+_arg = tyro.conf.arg
+
+
+def _described(name: str) -> Any:
+    """The help of a scenario's key, and its default, from the scenario itself."""
+    key = Scenario.model_fields[name]
+    default = "" if key.default is None or key.is_required() else f" (default: {key.default})"
+    if name in ("rider", "rig"):
+        default = f" (default: {key.get_default(call_default_factory=True).name})"
+    return _arg(help=f"{key.description}{default}", help_behavior_hint="")
+
+
+@dataclass(frozen=True)
+class Run:
+    """Ride a scenario in the virtual rig and record it.
+
+    Without arguments: the benchmark bicycle at 3.5 m/s under the paper's law, with a human-like
+    rider (visual delay 0.2 s, muscles, arms) for 30 s. The record is HDF5; see also bikesim plot,
+    info and export.
+    """
+
+    scenario: Annotated[Path | None, tyro.conf.Positional] = None
+    """A scenario as a TOML file; what is given beside it replaces its keys."""
+    bicycle: Annotated[str | None, _described("bicycle")] = None
+    speed: Annotated[float | None, _described("speed")] = None
+    law: Annotated[str | None, _described("law")] = None
+    rider: Annotated[str | None, _described("rider")] = None
+    rig: Annotated[str | None, _described("rig")] = None
+    duration: Annotated[float | None, _described("duration")] = None
+    seed: Annotated[int | None, _described("seed")] = None
+    gravity: Annotated[float | None, _described("gravity")] = None
+    period: Annotated[float | None, _described("period")] = None
+    physics_step: Annotated[float | None, _described("physics_step")] = None
+    roll: Annotated[
+        float | None, _arg(name="roll-deg", help="Roll at the start [deg].", help_behavior_hint="")
+    ] = None
+    push: Annotated[
+        tuple[str, ...],
+        _arg(metavar="TIME:IMPULSE", help="Lateral pushes: time [s], impulse to the right [N s]."),
+    ] = ()
+    set: Annotated[
+        tuple[str, ...],
+        _arg(
+            metavar="KEY=VALUE",
+            help="Any other key of a scenario, as in its TOML: rider.visual_delay=0.3, "
+            "rig.torque_limit=3.5, guard.fall_roll_deg=40. All keys: bikesim info --keys.",
+        ),
+    ] = ()
+    output: Annotated[
+        Path | None, _arg(help="The record, .h5 (default: runs/ with date and time).", help_behavior_hint="")
+    ] = None
+    force: bool = False
+    """Replace a record that is there already."""
+    figure: bool = False
+    """Also draw the run, as a PNG beside the record."""
+    json: bool = False
+    """Print the summary as JSON."""
+
+    def __call__(self) -> int:
+        scenario = scenario_from(self)
+        return _ride(self, scenario, self.output or _dated())
+
+
+def _dated() -> Path:
+    return Path("runs") / time.strftime("%Y%m%d-%H%M%S.h5")
+
+
+def _ride(command: Run, scenario: Scenario, output: Path) -> int:
+    from bikesim.cli.telling import inertia_told, summary_json, summary_told
+    from bikesim.experiment.run import build, inertia_error, run
+    from bikesim.experiment.summary import summarise
+    from bikesim.experiment.watch import Watch
+    from bikesim.record.reader import open_run
+
+    picture = output.with_suffix(".png") if command.figure else None
+    if picture is not None:
+        check_output(picture, force=command.force)
+    parts = build(scenario)
+    if (wrong := inertia_error(parts)) is not None:
+        print(inertia_told(wrong), file=sys.stderr)
+    with Watch(scenario.ticks, scenario.period).watching() as watch:
+        run(parts, output, force=command.force, interrupted=watch)
+    record = open_run(output)
+    summary = summarise(record)
+    if picture is not None:
+        from bikesim.report.run_figure import run_figure
+        from bikesim.report.style import save
+
+        save(run_figure([record]), picture)
+    if command.json:
+        print_json(summary_json(summary))
+    else:
+        print(summary_told(scenario, summary, picture))
+    if summary.reason.startswith("fault"):
+        raise InputError(f"{summary.reason} at tick {summary.ticks}; kept: {summary.record}")
+    return 0

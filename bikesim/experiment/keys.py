@@ -1,0 +1,39 @@
+"""Every key of a scenario, for help and documentation."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from pydantic import BaseModel
+from pydantic_core import PydanticUndefined
+
+from bikesim.experiment.scenario import Push, Scenario
+
+
+class Key(NamedTuple):
+    """A key as it is written in TOML or after --set, its default, and what it means."""
+
+    key: str
+    default: str
+    meaning: str
+
+
+def scenario_keys() -> list[Key]:
+    """The keys in their order; a table's keys as table.key."""
+    return [*_keys(Scenario, ""), *_keys(Push, "pushes.")]
+
+
+def _keys(model: type[BaseModel], prefix: str) -> Iterator[Key]:
+    for name, field in model.model_fields.items():
+        kind: Any = field.annotation
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            yield from _keys(kind, f"{prefix}{name}.")
+            continue
+        yield Key(f"{prefix}{name}", _told(field.default), field.description or "")
+
+
+def _told(default: Any) -> str:
+    if default is PydanticUndefined:
+        return "must be given"
+    if default is None or default == () or default == "":
+        return "none"
+    return str(default)

@@ -1,0 +1,102 @@
+"""What a run is: everything a user may set, validated; TOML in, TOML out."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from bikesim.errors import InputError
+from bikesim.guard import GuardSettings
+from bikesim.rider.settings import RiderSettings
+from bikesim.rig.settings import RigSettings
+from bikesim.settings import Settings
+
+_Time = Annotated[float, Field(ge=0)]
+_Speed = Annotated[float, Field(ge=0, le=30)]
+
+
+class StartSettings(Settings):
+    """The bicycle at the first tick."""
+
+    roll_deg: Annotated[float, Field(gt=-90, lt=90)] = Field(0.0, description="Roll [deg].")
+    roll_rate_deg_s: float = Field(0.0, description="Roll rate [deg/s].")
+    heading_deg: float = Field(0.0, description="Heading [deg].")
+
+
+class Push(Settings):
+    """A lateral push on the rear frame: a half sine in time, of a given impulse."""
+
+    time: _Time = Field(description="When it begins [s].")
+    impulse: float = Field(description="Lateral impulse, to the right [N s].")
+    duration: Annotated[float, Field(gt=0)] = Field(0.1, description="How long it lasts [s].")
+    height: float = Field(0.9, description="Of its point above the ground [m].")
+    ahead: float = Field(0.3, description="Of its point before the rear contact [m].")
+
+
+class Scenario(Settings):
+    """A run. Every key has a default: an empty scenario is the default run."""
+
+    bicycle: str = Field("benchmark", description="A bicycle by name, or the path of its file.")
+    gravity: Annotated[float, Field(gt=0, le=30)] | None = Field(
+        None, description="[m/s²]; default: that of the bicycle's source."
+    )
+    speed: _Speed = Field(3.5, description="Forward speed [m/s].")
+    speed_profile: tuple[tuple[_Time, _Speed], ...] = Field(
+        (), description="Pairs of time [s] and speed [m/s], linear between them; replaces speed."
+    )
+    law: Literal["paper", "momentum", "off"] = Field(
+        "paper", description="Haptic law: paper (eq. 4 and 6), momentum (exact), off (no feedback)."
+    )
+    rider: RiderSettings = Field(
+        default_factory=RiderSettings, description="A rider by name, or a table with its figures."
+    )
+    rig: RigSettings = Field(
+        default_factory=RigSettings, description="A rig by name or file, or a table of its figures."
+    )
+    duration: Annotated[float, Field(gt=0, le=86400)] = Field(30.0, description="[s]")
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = Field(1, description="Of all noise.")
+    period: Annotated[float, Field(ge=1e-4, le=0.1)] = Field(
+        0.001, description="Of the loop [s]: 0.001 is 1 kHz."
+    )
+    physics_step: Annotated[float, Field(ge=1e-5, le=0.01)] = Field(
+        0.0005, description="Of the virtual rig's physics [s]; the period is a multiple of it."
+    )
+    start: StartSettings = Field(default_factory=StartSettings, description="The first tick.")
+    pushes: tuple[Push, ...] = Field((), description="Lateral pushes on the rear frame.")
+    guard: GuardSettings = Field(default_factory=GuardSettings, description="Limits.")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scenario":
+        times = [time for time, _ in self.speed_profile]
+        if any(later <= earlier for earlier, later in zip(times, times[1:], strict=False)):
+            raise ValueError(f"speed_profile: times must rise from pair to pair, not {times}")
+        if self.duration < self.period:
+            raise ValueError(
+                f"duration = {self.duration} s: must be at least one loop period, {self.period} s"
+            )
+        return self
+
+    @property
+    def ticks(self) -> int:
+        """Ticks of a whole run."""
+        return max(1, round(self.duration / self.period))
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """A scenario file's keys, not yet checked. Raises InputError."""
+    try:
+        return tomllib.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise InputError(f"scenario {path}: {(error.strerror or str(error)).lower()}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"scenario {path}: is not text; a scenario is a TOML file") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"scenario {path}: not TOML: {error}") from None
+
+
+def to_toml(scenario: Scenario) -> str:
+    """The scenario with every figure that it has, as a file that runs it again."""
+    import tomli_w
+
+    return tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True))

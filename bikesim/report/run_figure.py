@@ -1,0 +1,73 @@
+"""The figure of a run: angles, torques, path."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bikesim.record.reader import Run
+from bikesim.report.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, figure, label, styled
+
+_MOST_POINTS = 6000  # more than a page can show
+_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, GREY)
+
+
+def run_figure(runs: Sequence[Run]) -> Figure:
+    """Roll, steer, torques over time and the path over ground, one colour a run."""
+    with styled():
+        drawn = figure(7.2, 7.6)
+        roll, steer, torque, path = drawn.subplots(4, 1, height_ratios=(1, 1, 1.2, 0.9))
+        for axes in (steer, torque):
+            axes.sharex(roll)
+        for run, colour in zip(runs, _cycle(len(runs)), strict=True):
+            _draw(run, colour, len(runs) > 1, roll, steer, torque, path)
+        label(roll, y="roll φ [deg]", title=_title(runs))
+        label(steer, y="steer δ [deg]")
+        label(torque, x="time [s]", y="torque [N m]")
+        label(path, x="forward x [m]", y="to the right y [m]")
+        path.invert_yaxis()  # seen from above with x to the right, right is down
+        if len(runs) > 1:
+            roll.legend(loc="upper right", ncols=2)
+        torque.legend(loc="upper right", ncols=2)
+    return drawn
+
+
+def _draw(
+    run: Run, colour: str, several: bool, roll: Axes, steer: Axes, torque: Axes, path: Axes
+) -> None:
+    thin = slice(None, None, max(1, run.ticks // _MOST_POINTS))
+    time = run.time[thin]
+    name = f"{_haptics(run)}, {run.rider}" if several else ""
+    roll.plot(time, np.degrees(run.channel("roll")[thin]), color=colour, label=name)
+    steer.plot(time, np.degrees(run.channel("steer")[thin]), color=colour)
+    sent = "feedback torque $T_f$" + (f" ({_haptics(run)})" if several else "")
+    torque.plot(time, run.channel("sent_torque")[thin], color=colour, label=sent)
+    if "rider_torque" in run.names:
+        rider = "rider torque $T_δ$" + (f" ({_haptics(run)})" if several else "")
+        shade = colour if several else ORANGE
+        style = "--" if several else "-"
+        torque.plot(time, run.channel("rider_torque")[thin], style, color=shade, lw=0.9, label=rider)
+    path.plot(run.channel("x")[thin], run.channel("y")[thin], color=colour)
+    if run.ending is not None and run.ending.fell:
+        roll.plot(time[-1:], np.degrees(run.channel("roll")[-1:]), "x", color=colour, ms=8, mew=2)
+
+
+def _title(runs: Sequence[Run]) -> str:
+    first = runs[0]
+    speed = first.channel("speed")
+    text = f"{first.bicycle.name}, {speed[0]:g} m/s" if len(speed) else first.bicycle.name
+    if len(runs) > 1:
+        return text
+    text += f", {_haptics(first)}, rider {first.rider}, rig {first.rig}"
+    if first.ending is not None and first.ending.fall_time is not None:
+        text += f": fell at {first.ending.fall_time:.2f} s"
+    return text
+
+
+def _haptics(run: Run) -> str:
+    return "haptics off" if run.law == "off" else f"law {run.law}"
+
+
+def _cycle(count: int) -> list[str]:
+    return [_COLOURS[i % len(_COLOURS)] for i in range(count)]
