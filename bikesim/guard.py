@@ -1,7 +1,7 @@
 """What stands between the law and a person's arms: limits, and reasons to stop."""
 
 import math
-from typing import Annotated, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 from pydantic import Field
 
@@ -15,6 +15,8 @@ _STOP_MARGIN = 0.0087
 
 class GuardSettings(Settings):
     """Limits that hold whatever the model computes."""
+
+    table: ClassVar[str] = "guard"
 
     torque_limit: Annotated[float, Field(gt=0, le=100)] = Field(
         10.0, description="Largest feedback torque [N m]."

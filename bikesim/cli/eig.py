@@ -28,11 +28,12 @@ class Eig:
     """Forward speeds [m/s]: one (5), several (1,2.5,7), or first:last:step (0:10:0.1)."""
     gravity: Annotated[
         float | None,
-        tyro.conf.arg(help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""),
+        tyro.conf.arg(metavar="M/S²", help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""),
     ] = None
     inertia: Annotated[
         float | None,
         tyro.conf.arg(
+            metavar="KG·M²",
             help="Of the rig's handlebar [kg m²] (default: what each law asks for).",
             help_behavior_hint="",
         ),
@@ -40,6 +41,7 @@ class Eig:
     figure: Annotated[
         Path | None,
         tyro.conf.arg(
+            metavar="FILE",
             help="Where to draw it, .png, .pdf or .svg (default: eigenvalues-BICYCLE.png here).",
             help_behavior_hint="",
         ),

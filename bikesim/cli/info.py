@@ -17,14 +17,23 @@ if TYPE_CHECKING:
 class Info:
     """What a record holds; or, without one, the bicycles, riders, rigs and keys that there are."""
 
-    record: Annotated[Path | None, tyro.conf.Positional] = None
-    """A run file."""
+    record: Annotated[
+        Path | None,
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="RUN.h5", help="A run file.", help_behavior_hint=""),
+    ] = None
     scenario: bool = False
     """Print only its resolved scenario: a TOML file that runs it again."""
     keys: bool = False
     """List every key of a scenario with its default and meaning."""
-    bicycle: str | None = None
-    """Print a bicycle by name or file as our TOML."""
+    bicycle: Annotated[
+        str | None,
+        tyro.conf.arg(
+            metavar="NAME|FILE",
+            help="Print a bicycle by name or file as our TOML.",
+            help_behavior_hint="",
+        ),
+    ] = None
     json: bool = False
     """Print JSON."""
 

@@ -17,7 +17,13 @@ def parse(what: Any, arguments: Sequence[str], description: str) -> Any:
     said = io.StringIO()
     try:
         with contextlib.redirect_stderr(said):
-            return tyro.cli(what, prog="bikesim", args=list(arguments), description=description)
+            return tyro.cli(
+                what,
+                prog="bikesim",
+                args=list(arguments),
+                description=description,
+                config=(tyro.conf.FlagCreatePairsOff,),
+            )
     except SystemExit as ending:
         if ending.code in (0, None):
             raise
@@ -31,11 +37,17 @@ def one_line(box: str) -> str:
     """The message inside a box that tyro drew, without its help."""
     parts: list[str] = []
     for line in box.splitlines()[1:]:
-        text = line.strip("│╭╮╰╯ ").strip()
+        text = re.sub(r"\x1b\[[0-9;]*m", "", line).strip("│╭╮╰╯ ")
         if re.match(r"(For full helptext|Argument helptext)", text):
             break
         if not re.fullmatch(r"[─-]*", text):
             parts.append(text)
-    message = re.sub(r"\s+", " ", " ".join(parts))
-    message = re.sub(r"\x1b\[[0-9;]*m", "", message)
-    return (message or " ".join(box.split())).replace(" Perhaps you meant:", "; perhaps you meant")
+    message = " ".join(" ".join(parts or box.split()).split())
+    message, _, near = message.partition(" Perhaps you meant:")
+    message = _UNION.sub(r"must be a number, not \1", message)
+    options = re.findall(r"--[a-z-]+", near)
+    return f"{message}; did you mean {' or '.join(dict.fromkeys(options))}?" if options else message
+
+
+# What tyro says of an optional number that is none, in its own terms.
+_UNION = re.compile(r"no type matching \{None\}\|\w+ could be instantiated from \['(.*?)'\]\. .*")

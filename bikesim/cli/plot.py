@@ -19,6 +19,7 @@ class Plot:
         Path | None,
         tyro.conf.arg(
             aliases=["-o"],
+            metavar="FILE",
             help="The figure, .png, .pdf or .svg (default: the first record's name with .png).",
             help_behavior_hint="",
         ),

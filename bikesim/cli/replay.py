@@ -16,8 +16,8 @@ class Replay:
     """Hold our law against a recording: of a run of ours, or of a real rig (CSV).
 
     Every tick's roll and steer as recorded give a torque and the roll one tick later; the errors
-    against what was recorded are printed. A record of ours is also ridden again, through the loop,
-    from its recorded steer.
+    against what was recorded are printed. A record of ours is also ridden again through the loop, on
+    a rig that plays back its steer.
     """
 
     recording: tyro.conf.Positional[Path]
@@ -26,17 +26,19 @@ class Replay:
     bicycle: Annotated[
         str | None,
         tyro.conf.arg(
+            metavar="NAME|FILE",
             help="By name or file (default: a record's own; benchmark for a CSV).",
             help_behavior_hint="",
         ),
     ] = None
     gravity: Annotated[
         float | None,
-        tyro.conf.arg(help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""),
+        tyro.conf.arg(metavar="M/S²", help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""),
     ] = None
     torque_limit: Annotated[
         float | None,
         tyro.conf.arg(
+            metavar="N·M",
             help="At which the recorded torque was clipped [N m] (default: not at all).",
             help_behavior_hint="",
         ),
@@ -44,6 +46,7 @@ class Replay:
     law: Annotated[
         str | None,
         tyro.conf.arg(
+            metavar="LAW",
             help="paper, momentum or off (default: a record's own; paper for a CSV).",
             help_behavior_hint="",
         ),
@@ -64,11 +67,17 @@ class Replay:
         if self.gravity is not None:
             bicycle = bicycle.with_gravity(self.gravity)
         result = compare(recording, bicycle, law=self.law, torque_limit=self.torque_limit)
+        figures = result.as_json()
+        if recording.run is not None and self.bicycle is None and self.law is None:
+            from bikesim.experiment.ride_again import ride_again
+
+            again = ride_again(recording.run)
+            figures["max_ridden_again_torque_error_N_m"] = max(again)
         if self.json:
-            print_json(result.as_json())
+            print_json(figures)
             return 0
         print(f"{self.recording}: {bicycle.name}, law {result.law}, g {bicycle.gravity} m/s²")
-        for key, value in result.as_json().items():
+        for key, value in figures.items():
             print(f"  {_label(key)}: {_number(value)}")
         return 0
 

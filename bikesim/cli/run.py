@@ -16,13 +16,13 @@ from bikesim.experiment.scenario import Scenario
 _arg = tyro.conf.arg
 
 
-def _described(name: str) -> Any:
+def _described(name: str, metavar: str) -> Any:
     """The help of a scenario's key, and its default, from the scenario itself."""
     key = Scenario.model_fields[name]
     default = "" if key.default is None or key.is_required() else f" (default: {key.default})"
     if name in ("rider", "rig"):
         default = f" (default: {key.get_default(call_default_factory=True).name})"
-    return _arg(help=f"{key.description}{default}", help_behavior_hint="")
+    return _arg(help=f"{key.description}{default}", help_behavior_hint="", metavar=metavar)
 
 
 @dataclass(frozen=True)
@@ -34,35 +34,53 @@ class Run:
     info and export.
     """
 
-    scenario: Annotated[Path | None, tyro.conf.Positional] = None
-    """A scenario as a TOML file; what is given beside it replaces its keys."""
-    bicycle: Annotated[str | None, _described("bicycle")] = None
-    speed: Annotated[float | None, _described("speed")] = None
-    law: Annotated[str | None, _described("law")] = None
-    rider: Annotated[str | None, _described("rider")] = None
-    rig: Annotated[str | None, _described("rig")] = None
-    duration: Annotated[float | None, _described("duration")] = None
-    seed: Annotated[int | None, _described("seed")] = None
-    gravity: Annotated[float | None, _described("gravity")] = None
-    period: Annotated[float | None, _described("period")] = None
-    physics_step: Annotated[float | None, _described("physics_step")] = None
+    scenario: Annotated[
+        Path | None,
+        tyro.conf.Positional,
+        _arg(
+            metavar="SCENARIO.toml",
+            help="A scenario file; what is given beside it replaces its keys.",
+            help_behavior_hint="",
+        ),
+    ] = None
+    bicycle: Annotated[str | None, _described("bicycle", "NAME|FILE")] = None
+    speed: Annotated[float | None, _described("speed", "M/S")] = None
+    law: Annotated[str | None, _described("law", "{paper,momentum,off}")] = None
+    rider: Annotated[str | None, _described("rider", "NAME")] = None
+    rig: Annotated[str | None, _described("rig", "NAME|FILE")] = None
+    duration: Annotated[float | None, _described("duration", "S")] = None
+    seed: Annotated[int | None, _described("seed", "INT")] = None
+    gravity: Annotated[float | None, _described("gravity", "M/S²")] = None
+    period: Annotated[float | None, _described("period", "S")] = None
+    physics_step: Annotated[float | None, _described("physics_step", "S")] = None
     roll: Annotated[
-        float | None, _arg(name="roll-deg", help="Roll at the start [deg].", help_behavior_hint="")
+        float | None, _arg(name="roll-deg", metavar="DEG", help="Roll at the start [deg].", help_behavior_hint="")
     ] = None
     push: Annotated[
         tuple[str, ...],
-        _arg(metavar="TIME:IMPULSE", help="Lateral pushes: time [s], impulse to the right [N s]."),
+        _arg(
+            metavar="[TIME:IMPULSE ...]",
+            help="Lateral pushes: time [s], impulse to the right [N s].",
+            help_behavior_hint="",
+        ),
     ] = ()
     set: Annotated[
         tuple[str, ...],
         _arg(
-            metavar="KEY=VALUE",
+            metavar="[KEY=VALUE ...]",
             help="Any other key of a scenario, as in its TOML: rider.visual_delay=0.3, "
             "rig.torque_limit=3.5, guard.fall_roll_deg=40. All keys: bikesim info --keys.",
+            help_behavior_hint="",
         ),
     ] = ()
     output: Annotated[
-        Path | None, _arg(help="The record, .h5 (default: runs/ with date and time).", help_behavior_hint="")
+        Path | None, 
+            _arg(
+                aliases=["-o"],
+                metavar="FILE.h5",
+                help="The record (default: runs/ with date and time).",
+                help_behavior_hint="",
+            ),
     ] = None
     force: bool = False
     """Replace a record that is there already."""

@@ -2,7 +2,7 @@
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -19,6 +19,8 @@ _Speed = Annotated[float, Field(ge=0, le=30)]
 class StartSettings(Settings):
     """The bicycle at the first tick."""
 
+    table: ClassVar[str] = "start"
+
     roll_deg: Annotated[float, Field(gt=-90, lt=90)] = Field(0.0, description="Roll [deg].")
     roll_rate_deg_s: float = Field(0.0, description="Roll rate [deg/s].")
     heading_deg: float = Field(0.0, description="Heading [deg].")
@@ -26,6 +28,8 @@ class StartSettings(Settings):
 
 class Push(Settings):
     """A lateral push on the rear frame: a half sine in time, of a given impulse."""
+
+    table: ClassVar[str] = "pushes"
 
     time: _Time = Field(description="When it begins [s].")
     impulse: float = Field(description="Lateral impulse, to the right [N s].")

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from bikesim.model.eigen import Modes
 from bikesim.report.eigenvalue_table import EigenvalueTable, eigenvalue_table
-from bikesim.report.style import BLACK, BLUE, VERMILION, figure, label, styled
+from bikesim.report.style import BLACK, BLUE, GREEN, VERMILION, figure, label, styled
 
 _DRAWN = (("bicycle", BLACK, "-", 2.2), ("paper", VERMILION, "--", 1.3), ("momentum", BLUE, ":", 1.6))
 _POINTS = 401
@@ -27,10 +27,25 @@ def eigenvalue_figure(table: EigenvalueTable) -> Figure:
         real, imaginary = drawn.subplots(1, 2)
         draw_real_parts(real, fine)
         draw_part(imaginary, fine, lambda s: s.imag if s.imag > 0 else np.nan)
+        _name_modes(real, fine)
         label(real, x="forward speed v [m/s]", y="Re λ [1/s]", title=table.bicycle.name)
         label(imaginary, x="forward speed v [m/s]", y="Im λ [rad/s]", title=_inertias(table))
-        real.legend(loc="lower left")
+        imaginary.set_xlim(real.get_xlim())
+        imaginary.legend(loc="upper left")
     return drawn
+
+
+def _name_modes(axes: Axes, table: EigenvalueTable) -> None:
+    """The modes by name, each beside its own line at a speed where the lines lie apart."""
+    row = min(table.rows, key=lambda row: abs(row.speed - 2.5))
+    for name, s, side in (
+        ("weave", row.bicycle.weave[0], "left"),
+        ("capsize", row.bicycle.capsize, "right"),
+        ("castering", row.bicycle.castering, "left"),
+    ):
+        axes.annotate(
+            name, (row.speed, s.real), (0, 6), textcoords="offset points", fontsize=8, ha=side
+        )
 
 
 def draw_real_parts(axes: Axes, table: EigenvalueTable, lowest: float = -12.0) -> None:
@@ -39,7 +54,9 @@ def draw_real_parts(axes: Axes, table: EigenvalueTable, lowest: float = -12.0) -
     axes.axhline(0, color=BLACK, lw=0.8)
     axes.set_ylim(lowest, 8)
     if table.limits.weave is not None and table.limits.capsize is not None:
-        axes.axvspan(table.limits.weave, table.limits.capsize, color="#009E73", alpha=0.12, lw=0)
+        axes.axvspan(table.limits.weave, table.limits.capsize, color=GREEN, alpha=0.12, lw=0)
+        middle = (table.limits.weave + table.limits.capsize) / 2
+        axes.text(middle, 7.6, "self-stable", ha="center", va="top", fontsize=8, color=GREEN)
 
 
 def draw_part(axes: Axes, table: EigenvalueTable, part: Callable[[complex], float]) -> None:
@@ -58,5 +75,5 @@ _NAMES = {"bicycle": "bicycle", "paper": "simulator, law paper", "momentum": "si
 
 def _inertias(table: EigenvalueTable) -> str:
     if table.inertia is not None:
-        return f"handlebar inertia {table.inertia:.4g} kg m²"
-    return f"handlebar inertia {table.inertia_paper:.4f} (paper), {table.inertia_momentum:.4f} (momentum)"
+        return f"I = {table.inertia:.4g} kg m²"
+    return f"I = {table.inertia_paper:.4f} / {table.inertia_momentum:.4f} kg m²"

@@ -26,10 +26,11 @@ def run_figure(runs: Sequence[Run]) -> Figure:
         label(steer, y="steer δ [deg]")
         label(torque, x="time [s]", y="torque [N m]")
         label(path, x="forward x [m]", y="to the right y [m]")
+        path.set_aspect("equal", adjustable="datalim")
         path.invert_yaxis()  # seen from above with x to the right, right is down
-        if len(runs) > 1:
-            roll.legend(loc="upper right", ncols=2)
-        torque.legend(loc="upper right", ncols=2)
+        for axes in (roll, torque) if len(runs) > 1 else (torque,):
+            # Above the axes, where no line runs.
+            axes.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=4, borderaxespad=0)
     return drawn
 
 
@@ -55,8 +56,10 @@ def _draw(
 
 def _title(runs: Sequence[Run]) -> str:
     first = runs[0]
-    speed = first.channel("speed")
-    text = f"{first.bicycle.name}, {speed[0]:g} m/s" if len(speed) else first.bicycle.name
+    text = first.bicycle.name
+    if first.ticks:
+        lowest, highest = (f(first.channel("speed")) for f in (np.min, np.max))
+        text += f", {lowest:.3g} m/s" if lowest == highest else f", {lowest:.3g} to {highest:.3g} m/s"
     if len(runs) > 1:
         return text
     text += f", {_haptics(first)}, rider {first.rider}, rig {first.rig}"

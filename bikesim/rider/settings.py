@@ -1,6 +1,6 @@
 """Riders by name, and every figure of a rider that a user may set."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -17,6 +17,8 @@ class RiderSettings(Settings):
     Made from a `name` alone it has the figures of the rider of that name; those given beside the
     name replace them.
     """
+
+    table: ClassVar[str] = "rider"
 
     name: str = Field(
         "human",

@@ -3,7 +3,7 @@
 import math
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -21,6 +21,8 @@ class RigSettings(Settings):
     Made from a `name` alone it has all figures of the rig of that name (or TOML file); those given
     beside the name replace them.
     """
+
+    table: ClassVar[str] = "rig"
 
     name: str = Field("ideal", description="One that ships, or the path of a TOML file.")
     description: str = Field("", description="What rig this is, and where its figures come from.")

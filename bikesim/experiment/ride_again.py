@@ -1,0 +1,79 @@
+"""A record ridden again: the same loop and law, on a rig that plays back its recorded steer."""
+
+import tomllib
+from typing import NamedTuple
+
+import numpy as np
+
+from bikesim.experiment.scenario import Scenario
+from bikesim.guard import Guard
+from bikesim.loop import Moments, Start, ride
+from bikesim.model.haptic import HapticBicycle
+from bikesim.model.law import Law
+from bikesim.record.channels import TICK_CHANNELS
+from bikesim.record.reader import Run
+from bikesim.rig.base import RigInfo, Sample
+from bikesim.rig.playback import PlaybackRig
+
+
+class Difference(NamedTuple):
+    """The largest differences from the record: T_f of the law, and what the guard allowed [N m]."""
+
+    feedback_torque: float
+    allowed_torque: float
+
+
+class _RecordedCourse:
+    """Speed and disturbance as recorded, found by the tick's own time."""
+
+    def __init__(self, run: Run) -> None:
+        time = run.time.tolist()
+        pushes = zip(
+            run.channel("roll_moment").tolist(), run.channel("steer_moment").tolist(), strict=True
+        )
+        self._speed = dict(zip(time, run.channel("speed").tolist(), strict=True))
+        self._disturbance = dict(zip(time, (Moments(*push) for push in pushes), strict=True))
+
+    def speed(self, time: float) -> float:
+        """[m/s]"""
+        return self._speed[time]
+
+    def disturbance(self, time: float) -> Moments:
+        """[N m]"""
+        return self._disturbance[time]
+
+
+class _Rows:
+    def __init__(self) -> None:
+        self.rows: list[tuple[float, ...]] = []
+        self.append = self.rows.append
+
+    def column(self, name: str) -> np.ndarray:
+        names = [channel.name for channel in TICK_CHANNELS]
+        return np.array([row[names.index(name)] for row in self.rows])
+
+
+def ride_again(run: Run) -> Difference:
+    """Both differences are zero where law and guard compute today what they did then."""
+    scenario = Scenario(**tomllib.loads(run.scenario))
+    columns = (run.channel(name).tolist() for name in ("time", "steer", "steer_rate"))
+    samples = [Sample(*values) for values in zip(*columns, strict=True)]
+    info = RigInfo("playback", run.period, run.handlebar_inertia, scenario.rig.steer_stop)
+    rows = _Rows()
+    ride(
+        PlaybackRig(info, samples),
+        HapticBicycle(run.bicycle, Law(run.law)),
+        Guard(scenario.guard, run.period, info.steer_stop),
+        rows,
+        course=_RecordedCourse(run),
+        start=Start(
+            *(float(run.channel(name)[0]) for name in ("roll", "roll_rate", "heading"))
+        ),
+        ticks=run.ticks + 1,
+    )
+    return Difference(*(_largest(run, rows, name) for name in Difference._fields))
+
+
+def _largest(run: Run, rows: _Rows, name: str) -> float:
+    again = rows.column(name)
+    return float(np.abs(again - run.channel(name)[: len(again)]).max())
