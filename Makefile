@@ -1,0 +1,54 @@
+# On a fresh machine with Python 3.11 or newer: make run, make test.
+# Both first make .venv, once; PYTHON names the interpreter to take, ARGS goes to pytest.
+
+SHELL := /bin/bash
+export PYTHON
+unexport PYTHONPATH PYTHONHOME
+
+# A TMPDIR that is relative or gone breaks the tools that change folder.
+export TMPDIR := $(shell cd "$${TMPDIR:-/tmp}" 2>/dev/null && [ -w . ] && pwd || echo /tmp)
+
+PY := .venv/bin/python
+READY := .venv/ready
+
+.PHONY: run test check lint types format bench lock gl clean
+
+run: $(READY)
+	$(PY) -m bikesim run --output runs/first.h5 --force --figure
+
+test: $(READY)
+	$(PY) -m pytest --numprocesses auto --maxprocesses 4 $(ARGS)
+
+check: lint types
+
+lint: $(READY)
+	$(PY) -m ruff check
+	$(PY) -m ruff format --check
+
+types: $(READY)
+	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(PY) -m pyright
+
+format: $(READY)
+	$(PY) -m ruff check --fix
+	$(PY) -m ruff format
+
+bench: $(READY)
+	$(PY) -m benchmarks
+
+# The newest versions that pyproject.toml allows, for every platform and Python; no address gets in.
+lock: $(READY)
+	$(PY) -m uv pip compile --quiet --upgrade --universal --python-version 3.11 --all-extras \
+		--generate-hashes --no-emit-index-url --no-emit-find-links --no-config \
+		--custom-compile-command "make lock" --output-file requirements.lock pyproject.toml
+
+# System libraries with which MuJoCo draws without a display.
+gl:
+	@bash scripts/apt.sh libegl1 libgl1 libgl1-mesa-dri libosmesa6
+
+clean:
+	rm -rf .venv dist runs .pytest_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(READY): pyproject.toml requirements.lock scripts/setup.sh
+	@bash scripts/setup.sh
+	@touch $@

@@ -1,0 +1,1 @@
+"""Measurements of speed and robustness; `python -m benchmarks` runs them all."""
