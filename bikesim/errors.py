@@ -13,7 +13,11 @@ class InputError(Exception):
 
 def unknown(kind: str, name: str, known: Iterable[str]) -> InputError:
     """The error for a name that is not among the known ones, naming the near ones."""
-    names = list(known)
-    near = difflib.get_close_matches(name.lower(), names, n=3, cutoff=0.5)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"known: {', '.join(names)}"
+    by_lower = {text.lower(): text for text in known}
+    near = difflib.get_close_matches(name.lower(), by_lower, n=3, cutoff=0.5)
+    hint = (
+        f"did you mean {' or '.join(by_lower[text] for text in near)}?"
+        if near
+        else f"known: {', '.join(by_lower.values())}"
+    )
     return InputError(f"unknown {kind} {name!r}; {hint}")

@@ -19,13 +19,13 @@ class GuardSettings(Settings):
     table: ClassVar[str] = "guard"
 
     torque_limit: Annotated[float, Field(gt=0, le=100)] = Field(
-        10.0, description="Largest feedback torque [N m]."
+        default=10.0, description="Largest feedback torque [N m]."
     )
     torque_rate_limit: Annotated[float, Field(gt=0)] = Field(
-        300.0, description="Fastest change of the feedback torque [N m/s]."
+        default=300.0, description="Fastest change of the feedback torque [N m/s]."
     )
     fall_roll_deg: Annotated[float, Field(gt=0, lt=90)] = Field(
-        45.0, description="Roll beyond which the bicycle has fallen [deg]."
+        default=45.0, description="Roll beyond which the bicycle has fallen [deg]."
     )
 
 
@@ -88,7 +88,9 @@ class Guard:
         if not math.isfinite(roll):
             return self._fault("roll", roll)
         side = "right" if roll > 0 else "left"
-        return Stop(f"fell to the {side}: roll beyond {math.degrees(self._fall):.0f} deg", fell=True)
+        return Stop(
+            f"fell to the {side}: roll beyond {math.degrees(self._fall):.0f} deg", fell=True
+        )
 
     def _at_stop(self, steer: float) -> Stop:
         if not math.isfinite(steer):

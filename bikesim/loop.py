@@ -98,7 +98,11 @@ def ride(
 
 
 def _first(
-    haptic: HapticBicycle, start: Start, sample: tuple[float, float, float], speed: float, moments: Moments
+    haptic: HapticBicycle,
+    start: Start,
+    sample: tuple[float, float, float],
+    speed: float,
+    moments: Moments,
 ) -> BicycleState:
     time, steer, steer_rate = sample
     return haptic.start(

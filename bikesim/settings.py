@@ -34,7 +34,7 @@ def _one_line(model: type[Settings], error: ValidationError) -> InputError:
             place = f" in [{model.table}]" if model.table else ""
             return unknown(f"key{place}", key, model.model_fields)
         case "value_error":
-            said = str(first["ctx"]["error"])
+            said = str(first.get("ctx", {})["error"])
             return InputError(f"{where}: {said}" if where else said)
         case "missing":
             return InputError(f"{where}: must be given")

@@ -28,7 +28,9 @@ class Eig:
     """Forward speeds [m/s]: one (5), several (1,2.5,7), or first:last:step (0:10:0.1)."""
     gravity: Annotated[
         float | None,
-        tyro.conf.arg(metavar="M/S²", help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""),
+        tyro.conf.arg(
+            metavar="M/S²", help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""
+        ),
     ] = None
     inertia: Annotated[
         float | None,
@@ -49,7 +51,7 @@ class Eig:
     force: bool = False
     """Replace a figure that is there already."""
     json: bool = False
-    """Print JSON instead: each row's lists are castering, capsize, weave, weave as [re, im] [1/s]."""
+    """Print JSON instead; its lists are castering, capsize, weave, weave as [re, im] in 1/s."""
 
     def __call__(self) -> int:
         from bikesim import bicycles
@@ -93,7 +95,7 @@ class Eig:
 
 
 def parse_speeds(text: str) -> list[float]:
-    """"5", "1,2.5" or "first:last:step", last included, in m/s. Raises InputError."""
+    """ "5", "1,2.5" or "first:last:step", last included, in m/s. Raises InputError."""
     wrong = InputError(
         f"--speeds {text}: must be a speed (5), several (1,2.5) or first:last:step (0:10:0.1), "
         "from 0 to 100 m/s"

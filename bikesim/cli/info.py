@@ -86,7 +86,8 @@ class Info:
             return
         width = max(len(row.key) for row in rows)
         for row in rows:
-            print(f"{row.key.ljust(width)}  {row.meaning} Default: {row.default}.")
+            default = f" Default: {row.default}." if row.default else ""
+            print(f"{row.key.ljust(width)}  {row.meaning}{default}")
 
 
 def described(run: "Run") -> dict[str, Any]:

@@ -14,9 +14,7 @@ def print_json(value: Any) -> None:
     print()
 
 
-def print_table(
-    header: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1
-) -> None:
+def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) -> None:
     """Columns aligned: the first `left` ones to the left, the others to the right."""
     widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
     for row in [header, ["-" * width for width in widths], *rows]:

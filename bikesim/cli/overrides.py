@@ -52,4 +52,6 @@ def _push(text: str) -> dict[str, float]:
     try:
         return {"time": float(time), "impulse": float(impulse)}
     except ValueError:
-        raise InputError(f"--push {text}: must be TIME:IMPULSE in s and N s, such as 5:10") from None
+        raise InputError(
+            f"--push {text}: must be TIME:IMPULSE in s and N s, such as 5:10"
+        ) from None

@@ -16,8 +16,8 @@ class Replay:
     """Hold our law against a recording: of a run of ours, or of a real rig (CSV).
 
     Every tick's roll and steer as recorded give a torque and the roll one tick later; the errors
-    against what was recorded are printed. A record of ours is also ridden again through the loop, on
-    a rig that plays back its steer.
+    against what was recorded are printed. A record of ours is also ridden again through the loop,
+    on a rig that plays back its steer.
     """
 
     recording: tyro.conf.Positional[Path]
@@ -33,7 +33,9 @@ class Replay:
     ] = None
     gravity: Annotated[
         float | None,
-        tyro.conf.arg(metavar="M/S²", help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""),
+        tyro.conf.arg(
+            metavar="M/S²", help="[m/s²] (default: of the bicycle's source).", help_behavior_hint=""
+        ),
     ] = None
     torque_limit: Annotated[
         float | None,

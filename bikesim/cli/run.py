@@ -54,7 +54,10 @@ class Run:
     period: Annotated[float | None, _described("period", "S")] = None
     physics_step: Annotated[float | None, _described("physics_step", "S")] = None
     roll: Annotated[
-        float | None, _arg(name="roll-deg", metavar="DEG", help="Roll at the start [deg].", help_behavior_hint="")
+        float | None,
+        _arg(
+            name="roll-deg", metavar="DEG", help="Roll at the start [deg].", help_behavior_hint=""
+        ),
     ] = None
     push: Annotated[
         tuple[str, ...],
@@ -74,13 +77,13 @@ class Run:
         ),
     ] = ()
     output: Annotated[
-        Path | None, 
-            _arg(
-                aliases=["-o"],
-                metavar="FILE.h5",
-                help="The record (default: runs/ with date and time).",
-                help_behavior_hint="",
-            ),
+        Path | None,
+        _arg(
+            aliases=["-o"],
+            metavar="FILE.h5",
+            help="The record (default: runs/ with date and time).",
+            help_behavior_hint="",
+        ),
     ] = None
     force: bool = False
     """Replace a record that is there already."""

@@ -32,7 +32,8 @@ def summary_told(scenario: Scenario, summary: "Summary", picture: Path | None) -
     speed = f"{scenario.speed:g} m/s" if not scenario.speed_profile else "a speed profile"
     ridden = summary.ticks * scenario.period
     lines = [
-        f"{scenario.bicycle} at {speed}, {law}, rider {scenario.rider.name}, rig {scenario.rig.name}",
+        f"{scenario.bicycle} at {speed}, {law}, "
+        f"rider {scenario.rider.name}, rig {scenario.rig.name}",
         f"{_ending(summary)} ({ridden:.3f} s, {summary.ticks} ticks)",
         f"rms     roll {math.degrees(summary.rms_roll):.2f} deg, "
         f"steer {math.degrees(summary.rms_steer):.2f} deg, "

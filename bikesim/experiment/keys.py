@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
-from pydantic_core import PydanticUndefined
+from pydantic.fields import FieldInfo
 
 from bikesim.experiment.scenario import Push, Scenario
 
@@ -28,12 +28,15 @@ def _keys(model: type[BaseModel], prefix: str) -> Iterator[Key]:
         if isinstance(kind, type) and issubclass(kind, BaseModel):
             yield from _keys(kind, f"{prefix}{name}.")
             continue
-        yield Key(f"{prefix}{name}", _told(field.default), field.description or "")
+        yield Key(f"{prefix}{name}", _told(field, prefix), field.description or "")
 
 
-def _told(default: Any) -> str:
-    if default is PydanticUndefined:
+def _told(field: FieldInfo, prefix: str) -> str:
+    if field.is_required():
         return "must be given"
-    if default is None or default == () or default == "":
-        return "none"
-    return str(default)
+    if field.default in (None, (), ""):
+        # A description that says what stands for nothing has said it.
+        if "default:" in (field.description or ""):
+            return ""
+        return "that of the rider named" if prefix == "rider." else "none"
+    return str(field.default)

@@ -46,7 +46,9 @@ class _RecordedCourse:
 class _Rows:
     def __init__(self) -> None:
         self.rows: list[tuple[float, ...]] = []
-        self.append = self.rows.append
+
+    def append(self, row: tuple[float, ...]) -> None:
+        self.rows.append(row)
 
     def column(self, name: str) -> np.ndarray:
         names = [channel.name for channel in TICK_CHANNELS]
@@ -66,9 +68,7 @@ def ride_again(run: Run) -> Difference:
         Guard(scenario.guard, run.period, info.steer_stop),
         rows,
         course=_RecordedCourse(run),
-        start=Start(
-            *(float(run.channel(name)[0]) for name in ("roll", "roll_rate", "heading"))
-        ),
+        start=Start(*(float(run.channel(name)[0]) for name in ("roll", "roll_rate", "heading"))),
         ticks=run.ticks + 1,
     )
     return Difference(*(_largest(run, rows, name) for name in Difference._fields))

@@ -50,9 +50,7 @@ def build(scenario: Scenario) -> Parts:
     bicycle = scenario_bicycle(scenario)
     law = Law(scenario.law)
     for_rider, for_sensors = np.random.SeedSequence(scenario.seed).spawn(2)
-    rider = make_rider(
-        scenario.rider, scenario.physics_step, np.random.default_rng(for_rider)
-    )
+    rider = make_rider(scenario.rider, scenario.physics_step, np.random.default_rng(for_rider))
     rig = VirtualRig(
         scenario.rig,
         rider,
@@ -79,7 +77,11 @@ def build(scenario: Scenario) -> Parts:
 
 
 def run(
-    parts: Parts, output: Path, *, force: bool = False, interrupted: Callable[[], bool] = lambda: False
+    parts: Parts,
+    output: Path,
+    *,
+    force: bool = False,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> Ending:
     """Ride the scenario to its end and record it in `output`. Raises InputError."""
     scenario, info = parts.scenario, parts.rig.info
@@ -137,7 +139,10 @@ def inertia_error(parts: Parts) -> InertiaError | None:
     if law is Law.OFF or math.isclose(inertia, wanted, rel_tol=1e-3):
         return None
     speed = parts.course.speed(0.0)
-    is_, should = simulator_modes(parts.bicycle, law, speed, inertia), bicycle_modes(parts.bicycle, speed)
+    is_, should = (
+        simulator_modes(parts.bicycle, law, speed, inertia),
+        bicycle_modes(parts.bicycle, speed),
+    )
     errors = {
         "castering": abs(is_.castering - should.castering),
         "capsize": abs(is_.capsize - should.capsize),

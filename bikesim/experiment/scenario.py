@@ -1,6 +1,7 @@
 """What a run is: everything a user may set, validated; TOML in, TOML out."""
 
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -21,9 +22,9 @@ class StartSettings(Settings):
 
     table: ClassVar[str] = "start"
 
-    roll_deg: Annotated[float, Field(gt=-90, lt=90)] = Field(0.0, description="Roll [deg].")
-    roll_rate_deg_s: float = Field(0.0, description="Roll rate [deg/s].")
-    heading_deg: float = Field(0.0, description="Heading [deg].")
+    roll_deg: Annotated[float, Field(gt=-90, lt=90)] = Field(default=0.0, description="Roll [deg].")
+    roll_rate_deg_s: float = Field(default=0.0, description="Roll rate [deg/s].")
+    heading_deg: float = Field(default=0.0, description="Heading [deg].")
 
 
 class Push(Settings):
@@ -33,47 +34,64 @@ class Push(Settings):
 
     time: _Time = Field(description="When it begins [s].")
     impulse: float = Field(description="Lateral impulse, to the right [N s].")
-    duration: Annotated[float, Field(gt=0)] = Field(0.1, description="How long it lasts [s].")
-    height: float = Field(0.9, description="Of its point above the ground [m].")
-    ahead: float = Field(0.3, description="Of its point before the rear contact [m].")
+    duration: Annotated[float, Field(gt=0)] = Field(
+        default=0.1, description="How long it lasts [s]."
+    )
+    height: float = Field(default=0.9, description="Of its point above the ground [m].")
+    ahead: float = Field(default=0.3, description="Of its point before the rear contact [m].")
+
+
+def _ideal_rig() -> RigSettings:
+    # Not a plain default: the rig's file is to be read by who wants it, not by who imports this.
+    return RigSettings()
+
+
+LawName = Literal["paper", "momentum", "off"]
 
 
 class Scenario(Settings):
     """A run. Every key has a default: an empty scenario is the default run."""
 
-    bicycle: str = Field("benchmark", description="A bicycle by name, or the path of its file.")
+    bicycle: str = Field(
+        default="benchmark", description="A bicycle by name, or the path of its file."
+    )
     gravity: Annotated[float, Field(gt=0, le=30)] | None = Field(
-        None, description="[m/s²]; default: that of the bicycle's source."
+        default=None, description="[m/s²]; default: that of the bicycle's source."
     )
-    speed: _Speed = Field(3.5, description="Forward speed [m/s].")
+    speed: _Speed = Field(default=3.5, description="Forward speed [m/s].")
     speed_profile: tuple[tuple[_Time, _Speed], ...] = Field(
-        (), description="Pairs of time [s] and speed [m/s], linear between them; replaces speed."
+        default=(),
+        description="Pairs of time [s] and speed [m/s], linear between them; replaces speed.",
     )
-    law: Literal["paper", "momentum", "off"] = Field(
-        "paper", description="Haptic law: paper (eq. 4 and 6), momentum (exact), off (no feedback)."
+    law: LawName = Field(
+        default="paper",
+        description="Haptic law: paper (eq. 4 and 6), momentum (exact), off (no feedback).",
     )
     rider: RiderSettings = Field(
-        default_factory=RiderSettings, description="A rider by name, or a table with its figures."
+        default=RiderSettings(),
+        description="A rider by name, or a table with its figures.",
     )
     rig: RigSettings = Field(
-        default_factory=RigSettings, description="A rig by name or file, or a table of its figures."
+        default_factory=_ideal_rig,
+        description="A rig by name or file, or a table of its figures.",
     )
-    duration: Annotated[float, Field(gt=0, le=86400)] = Field(30.0, description="[s]")
-    seed: Annotated[int, Field(ge=0, lt=2**63)] = Field(1, description="Of all noise.")
+    duration: Annotated[float, Field(gt=0, le=86400)] = Field(default=30.0, description="[s]")
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = Field(default=1, description="Of all noise.")
     period: Annotated[float, Field(ge=1e-4, le=0.1)] = Field(
-        0.001, description="Of the loop [s]: 0.001 is 1 kHz."
+        default=0.001, description="Of the loop [s]: 0.001 is 1 kHz."
     )
     physics_step: Annotated[float, Field(ge=1e-5, le=0.01)] = Field(
-        0.0005, description="Of the virtual rig's physics [s]; the period is a multiple of it."
+        default=0.0005,
+        description="Of the virtual rig's physics [s]; the period is a multiple of it.",
     )
-    start: StartSettings = Field(default_factory=StartSettings, description="The first tick.")
-    pushes: tuple[Push, ...] = Field((), description="Lateral pushes on the rear frame.")
-    guard: GuardSettings = Field(default_factory=GuardSettings, description="Limits.")
+    start: StartSettings = Field(default=StartSettings(), description="The first tick.")
+    pushes: tuple[Push, ...] = Field(default=(), description="Lateral pushes on the rear frame.")
+    guard: GuardSettings = Field(default=GuardSettings(), description="Limits.")
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scenario":
         times = [time for time, _ in self.speed_profile]
-        if any(later <= earlier for earlier, later in zip(times, times[1:], strict=False)):
+        if any(later <= earlier for earlier, later in pairwise(times)):
             raise ValueError(f"speed_profile: times must rise from pair to pair, not {times}")
         if self.duration < self.period:
             raise ValueError(

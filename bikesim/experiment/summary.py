@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bikesim.record.header import Ending
 from bikesim.record.reader import Run
 
 
@@ -30,11 +31,12 @@ class Summary(NamedTuple):
 def summarise(run: Run) -> Summary:
     """The summary of a record; the feedback torque is what was really sent."""
     wall = run.timing("wall_time")
+    ending = run.ending or Ending("cut short: its program was killed")
     return Summary(
         record=str(run.path),
-        reason=run.ending.reason,
-        fell=run.ending.fell,
-        fall_time=run.ending.fall_time,
+        reason=ending.reason,
+        fell=ending.fell,
+        fall_time=ending.fall_time,
         ticks=run.ticks,
         rms_roll=_rms(run.channel("roll")),
         rms_steer=_rms(run.channel("steer")),

@@ -38,9 +38,7 @@ class Bicycle:
                 "in radians, between -pi/2 and pi/2"
             )
         if not 0 <= self.gravity < 100:
-            raise InputError(
-                f"bicycle {self.name}: gravity = {self.gravity}: from 0 to 100 m/s²"
-            )
+            raise InputError(f"bicycle {self.name}: gravity = {self.gravity}: from 0 to 100 m/s²")
 
     @classmethod
     def from_parameters(

@@ -61,9 +61,7 @@ def name_modes(values: np.ndarray) -> Modes:
 def bicycle_modes(bicycle: Bicycle, speed: float) -> Modes:
     """The modes of the bicycle itself, hands off, at a forward speed [m/s]."""
     m = bicycle.matrices
-    return name_modes(
-        eigenvalues(m.M, m.damping(speed), m.stiffness(speed, bicycle.gravity))
-    )
+    return name_modes(eigenvalues(m.M, m.damping(speed), m.stiffness(speed, bicycle.gravity)))
 
 
 def simulator_modes(
@@ -131,9 +129,7 @@ def _characteristic_polynomial(
     rows = np.array([[1.0], [second_row]])
 
     def entries(*by_power: Matrix) -> list[list[Polynomial]]:
-        return [
-            [Polynomial([matrix[i, j] for matrix in by_power]) for j in (0, 1)] for i in (0, 1)
-        ]
+        return [[Polynomial([matrix[i, j] for matrix in by_power]) for j in (0, 1)] for i in (0, 1)]
 
     nothing = np.zeros((2, 2))
     M = entries(mass)
@@ -143,7 +139,13 @@ def _characteristic_polynomial(
     def mixed(A: list[list[Polynomial]], B: list[list[Polynomial]]) -> Polynomial:
         return A[0][0] * B[1][1] + A[1][1] * B[0][0] - A[0][1] * B[1][0] - A[1][0] * B[0][1]
 
-    return (mixed(K, K) / 2, mixed(C, K), mixed(M, K) + mixed(C, C) / 2, mixed(M, C), mixed(M, M) / 2)
+    return (
+        mixed(K, K) / 2,
+        mixed(C, K),
+        mixed(M, K) + mixed(C, C) / 2,
+        mixed(M, C),
+        mixed(M, M) / 2,
+    )
 
 
 def _positive_roots(polynomial: Polynomial) -> list[float]:

@@ -1,4 +1,4 @@
-"""The haptic bicycle: roll integrated from measured steer, feedback torque for the bar (eq. 4, 6, 8).
+"""The haptic bicycle: roll from measured steer, feedback torque for the bar (eq. 4, 6, 8).
 
 Both laws are one expression. With p = M_φφ φ̇ + M_φδ δ̇ (see SCIENCE, "momentum form") write
 q = p / M_φφ, so that φ̇ = q - m δ̇ with m = M_φδ / M_φφ, and
@@ -12,13 +12,16 @@ T_φ and T_δ are disturbances on the bicycle (a gust, a push), zero otherwise.
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.law import Law
 from bikesim.model.transition import transition
+
+# A float for one rig; for a batch, an array with a value for each.
+Real: TypeAlias = Any
 
 
 class BicycleState(NamedTuple):
@@ -31,20 +34,20 @@ class BicycleState(NamedTuple):
     """
 
     time: float
-    steer: float
-    steer_rate: float
-    speed: float
-    roll: float
-    roll_rate: float
-    roll_acceleration: float
-    heading: float
-    x: float
-    y: float
-    distance: float
-    feedback_torque: float
-    momentum: float
-    roll_forcing: float
-    momentum_forcing: float
+    steer: Real
+    steer_rate: Real
+    speed: Real
+    roll: Real
+    roll_rate: Real
+    roll_acceleration: Real
+    heading: Real
+    x: Real
+    y: Real
+    distance: Real
+    feedback_torque: Real
+    momentum: Real
+    roll_forcing: Real
+    momentum_forcing: Real
 
 
 # Equal for all ticks of equal period and speed, so looked up: coefficients, then a transition.
@@ -76,14 +79,14 @@ class HapticBicycle:
         self,
         *,
         time: float = 0.0,
-        steer: float = 0.0,
-        steer_rate: float = 0.0,
-        speed: float = 0.0,
-        roll: float = 0.0,
-        roll_rate: float = 0.0,
-        heading: float = 0.0,
-        roll_moment: float = 0.0,
-        steer_moment: float = 0.0,
+        steer: Real = 0.0,
+        steer_rate: Real = 0.0,
+        speed: Real = 0.0,
+        roll: Real = 0.0,
+        roll_rate: Real = 0.0,
+        heading: Real = 0.0,
+        roll_moment: Real = 0.0,
+        steer_moment: Real = 0.0,
     ) -> BicycleState:
         """The state at the first sample; angles [rad], rates [rad/s], moments [N m]."""
         zero = 0.0 * (roll + roll_rate + steer + steer_rate + speed + roll_moment)
@@ -97,11 +100,11 @@ class HapticBicycle:
         self,
         before: BicycleState,
         time: float,
-        steer: float,
-        steer_rate: float,
-        speed: float,
-        roll_moment: float = 0.0,
-        steer_moment: float = 0.0,
+        steer: Real,
+        steer_rate: Real,
+        speed: Real,
+        roll_moment: Real = 0.0,
+        steer_moment: Real = 0.0,
     ) -> BicycleState:
         """The state at `time` [s], given what was measured then.
 
@@ -141,16 +144,16 @@ class HapticBicycle:
             0.5 * h * (speed0 * steer0 + speed * steer) + self._trail * (steer - steer0)
         )
         along = heading + 0.5 * turned
-        cos, sin = (math.cos, math.sin) if isinstance(along, float) else (np.cos, np.sin)
+        cos, sin = _cos_sin(along)
         return BicycleState._make(
             (
                 time, steer, steer_rate, speed, phi, phi_dot, q_dot,
-                heading + turned, x + travelled * cos(along), y + travelled * sin(along),
+                heading + turned, x + travelled * cos, y + travelled * sin,
                 distance + travelled, self._haptics * torque, q, e1, f1,
             )
         )  # fmt: skip
 
-    def _coefficients(self, h: float, v: float) -> _Coefficients:
+    def _coefficients(self, h: float, v: Real) -> _Coefficients:
         """Eq. 4's coefficients over M_φφ, eq. 6's, and the transition over h [s] at v [m/s]."""
         g, M_pp = self.bicycle.gravity, self._M_pp
         (C_pp, C_pd), (C_dp, C_dd) = self._C1
@@ -163,3 +166,12 @@ class HapticBicycle:
             v * C_dp, v * C_dd, g * K0_dp + v * v * K2_dp, g * K0_dd + v * v * K2_dd,
             *transition(h, K_pp, C_pp),
         )  # fmt: skip
+
+
+def _cos_sin(angle: float) -> tuple[float, float]:
+    if not isinstance(angle, float):
+        return np.cos(angle), np.sin(angle)
+    try:
+        return math.cos(angle), math.sin(angle)
+    except ValueError:  # of an infinite angle; the guard must see what a broken sensor does
+        return math.nan, math.nan

@@ -75,7 +75,10 @@ class BicycleParameters:
                 )
 
 
-_POSITIVE = tuple(
-    "w rR rF mR mB mH mF IRxx IRyy IBxx IByy IBzz IHxx IHyy IHzz IFxx IFyy".split()
+# fmt: off
+_POSITIVE = (
+    "w", "rR", "rF", "mR", "mB", "mH", "mF",
+    "IRxx", "IRyy", "IBxx", "IByy", "IBzz", "IHxx", "IHyy", "IHzz", "IFxx", "IFyy",
 )
+# fmt: on
 PARAMETER_NAMES = tuple(field.name for field in fields(BicycleParameters))

@@ -1,6 +1,5 @@
 """The haptic loop as it is sampled: what its period and delay make of the bicycle's modes."""
 
-
 import numpy as np
 
 from bikesim.model.bicycle import Bicycle
@@ -21,7 +20,7 @@ def sampled_eigenvalues(
     arm_damping: float = 0.0,
     arm_stiffness: float = 0.0,
 ) -> np.ndarray:
-    """Equivalent continuous eigenvalues s = ln(z) / T [1/s] of the sampled loop, most unstable first.
+    """Equivalent continuous eigenvalues s = ln(z)/T [1/s] of the sampled loop, least stable first.
 
     The bar of `inertia` [kg m²] (by default what the law asks for; add the arms' own) moves in
     continuous time under a torque held over each period T [s]; the law runs on samples of angle
@@ -71,12 +70,10 @@ def _bar_transition(
     inertia: float, damping: float, stiffness: float, period: float
 ) -> tuple[Matrix, np.ndarray]:
     """Exact motion of I δ̈ + b δ̇ + k δ = T over one period of constant torque."""
-    from scipy.linalg import expm  # noqa: PLC0415  (late: the tick does not need scipy)
+    from scipy.linalg import expm
 
     generator = np.zeros((3, 3))
     generator[0, 1] = 1.0
     generator[1] = [-stiffness / inertia, -damping / inertia, 1.0 / inertia]
     moved = expm(generator * period)
     return moved[:2, :2], moved[:2, 2]
-
-

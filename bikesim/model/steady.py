@@ -21,12 +21,13 @@ class SteadyTurn(NamedTuple):
 def steady_turn(bicycle: Bicycle, speed: float) -> SteadyTurn:
     """K (φ, δ) = (0, T_δ) with constant φ and δ at a forward speed [m/s] [M07, Sec. 5].
 
-    The roll ratio is infinite where K_φφ = 0 (no gravity).
+    Where K_φφ = 0 (no gravity) no roll holds a turn: its ratio is infinite, the torque's is nan.
     """
-    (K_pp, K_pd), (K_dp, K_dd) = bicycle.matrices.stiffness(speed, bicycle.gravity)
+    stiffness = bicycle.matrices.stiffness(speed, bicycle.gravity)
+    (K_pp, K_pd), (K_dp, K_dd) = stiffness.tolist()
     roll = -K_pd / K_pp if K_pp != 0 else math.copysign(math.inf, K_pd)
     return SteadyTurn(
-        roll_per_steer=float(roll),
-        steer_torque_per_steer=float(K_dd + K_dp * roll),
+        roll_per_steer=roll,
+        steer_torque_per_steer=K_dd + K_dp * roll,
         yaw_rate_per_steer=speed * math.cos(bicycle.steer_axis_tilt) / bicycle.wheelbase,
     )

@@ -89,7 +89,5 @@ def whipple_matrices(p: BicycleParameters) -> Matrices:
             ]
         ),
         K0=np.array([[m_T * z_T, -S_A], [-S_A, -S_A * sin]]),
-        K2=np.array(
-            [[0.0, (S_T - m_T * z_T) / p.w * cos], [0.0, (S_A + S_F * sin) / p.w * cos]]
-        ),
+        K2=np.array([[0.0, (S_T - m_T * z_T) / p.w * cos], [0.0, (S_A + S_F * sin) / p.w * cos]]),
     )

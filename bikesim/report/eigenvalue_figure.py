@@ -10,7 +10,11 @@ from bikesim.model.eigen import Modes
 from bikesim.report.eigenvalue_table import EigenvalueTable, eigenvalue_table
 from bikesim.report.style import BLACK, BLUE, GREEN, VERMILION, figure, label, styled
 
-_DRAWN = (("bicycle", BLACK, "-", 2.2), ("paper", VERMILION, "--", 1.3), ("momentum", BLUE, ":", 1.6))
+_DRAWN = (
+    ("bicycle", BLACK, "-", 2.2),
+    ("paper", VERMILION, "--", 1.3),
+    ("momentum", BLUE, ":", 1.6),
+)
 _POINTS = 401
 
 
@@ -70,7 +74,11 @@ def draw_part(axes: Axes, table: EigenvalueTable, part: Callable[[complex], floa
             axes.plot(speeds, values, style, color=colour, lw=width, label=name)
 
 
-_NAMES = {"bicycle": "bicycle", "paper": "simulator, law paper", "momentum": "simulator, law momentum"}
+_NAMES = {
+    "bicycle": "bicycle",
+    "paper": "simulator, law paper",
+    "momentum": "simulator, law momentum",
+}
 
 
 def _inertias(table: EigenvalueTable) -> str:

@@ -48,7 +48,9 @@ def _draw(
         rider = "rider torque $T_δ$" + (f" ({_haptics(run)})" if several else "")
         shade = colour if several else ORANGE
         style = "--" if several else "-"
-        torque.plot(time, run.channel("rider_torque")[thin], style, color=shade, lw=0.9, label=rider)
+        torque.plot(
+            time, run.channel("rider_torque")[thin], style, color=shade, lw=0.9, label=rider
+        )
     path.plot(run.channel("x")[thin], run.channel("y")[thin], color=colour)
     if run.ending is not None and run.ending.fell:
         roll.plot(time[-1:], np.degrees(run.channel("roll")[-1:]), "x", color=colour, ms=8, mew=2)
@@ -59,7 +61,9 @@ def _title(runs: Sequence[Run]) -> str:
     text = first.bicycle.name
     if first.ticks:
         lowest, highest = (f(first.channel("speed")) for f in (np.min, np.max))
-        text += f", {lowest:.3g} m/s" if lowest == highest else f", {lowest:.3g} to {highest:.3g} m/s"
+        text += (
+            f", {lowest:.3g} m/s" if lowest == highest else f", {lowest:.3g} to {highest:.3g} m/s"
+        )
     if len(runs) > 1:
         return text
     text += f", {_haptics(first)}, rider {first.rider}, rig {first.rig}"

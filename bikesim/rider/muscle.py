@@ -34,7 +34,7 @@ class Neuromuscular:
 def remnant(
     rms: float, bandwidth: float, step: float, random: np.random.Generator
 ) -> Iterator[float]:
-    """Torque noise [N m] that the rider's law does not explain: white noise through a first-order lag.
+    """Torque noise [N m] that the rider's law does not explain: white, through a first-order lag.
 
     `rms` [N m] and `bandwidth` [rad/s] hold whatever the step [s] (exact Ornstein-Uhlenbeck); it
     starts in its stationary distribution.

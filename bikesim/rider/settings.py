@@ -21,28 +21,37 @@ class RiderSettings(Settings):
     table: ClassVar[str] = "rider"
 
     name: str = Field(
-        "human",
+        default="human",
         description="human, pd, hands-off, or schwab2013-RUN with the number of an identified run.",
     )
-    roll_gain: _Gain | None = Field(None, description="k_phi of human and pd [N m/rad].")
-    roll_rate_gain: _Gain | None = Field(None, description="k_phi_dot of human and pd [N m s/rad].")
+    roll_gain: _Gain | None = Field(default=None, description="k_phi of human and pd [N m/rad].")
+    roll_rate_gain: _Gain | None = Field(
+        default=None, description="k_phi_dot of human and pd [N m s/rad]."
+    )
     visual_delay: Annotated[float, Field(ge=0, le=5)] | None = Field(
-        None, description="From seeing to intending, human and pd [s]; published: 0.10 to 0.56."
+        default=None,
+        description="From seeing to intending, human and pd [s]; published: 0.10 to 0.56.",
     )
     muscle_frequency: Annotated[float, Field(gt=0, le=1000)] | None = Field(
-        None, description="Neuromuscular natural frequency [rad/s]."
+        default=None, description="Neuromuscular natural frequency [rad/s]."
     )
     muscle_damping_ratio: Annotated[float, Field(gt=0, le=10)] | None = Field(
-        None, description="Neuromuscular damping ratio."
+        default=None, description="Neuromuscular damping ratio."
     )
-    arm_inertia: _NotNegative | None = Field(None, description="Arms about the steer axis [kg m²].")
-    arm_damping: _NotNegative | None = Field(None, description="Arms about the steer axis [N m s/rad].")
-    arm_stiffness: _NotNegative | None = Field(None, description="Arms about the steer axis [N m/rad].")
+    arm_inertia: _NotNegative | None = Field(
+        default=None, description="Arms about the steer axis [kg m²]."
+    )
+    arm_damping: _NotNegative | None = Field(
+        default=None, description="Arms about the steer axis [N m s/rad]."
+    )
+    arm_stiffness: _NotNegative | None = Field(
+        default=None, description="Arms about the steer axis [N m/rad]."
+    )
     remnant_rms: _NotNegative | None = Field(
-        None, description="Torque noise, root mean square [N m]."
+        default=None, description="Torque noise, root mean square [N m]."
     )
     remnant_bandwidth: Annotated[float, Field(gt=0)] | None = Field(
-        None, description="Torque noise, corner of its spectrum [rad/s]."
+        default=None, description="Torque noise, corner of its spectrum [rad/s]."
     )
 
     @model_validator(mode="before")

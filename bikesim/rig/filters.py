@@ -11,7 +11,7 @@ class LowPass:
 
     def __init__(self, cutoff: float, order: int, period: float) -> None:
         """`cutoff` [rad/s] at -3 dB, below the Nyquist frequency of `period` [s]."""
-        from scipy.signal import butter, sosfilt_zi  # noqa: PLC0415  (only filtered rigs need it)
+        from scipy.signal import butter, sosfilt_zi
 
         nyquist = 3.141592653589793 / period
         if cutoff >= nyquist:

@@ -34,12 +34,13 @@ def rig_model(
         )
     spec = rig_spec()
     spec.option.timestep = step
-    spec.body("head").quat = [math.cos(steer_axis_tilt / 2), 0, -math.sin(steer_axis_tilt / 2), 0]
+    half = steer_axis_tilt / 2
+    spec.body("head").quat[:] = [math.cos(half), 0, -math.sin(half), 0]
     # Only the moment about the axis acts; three equal ones are always a possible inertia.
-    spec.body("handlebar").inertia = [inertia - settings.rotor_inertia] * 3
+    spec.body("handlebar").inertia[:] = [inertia - settings.rotor_inertia] * 3
 
     joint = spec.joint("steer")
-    joint.range = [-settings.steer_stop, settings.steer_stop]
+    joint.range[:] = [-settings.steer_stop, settings.steer_stop]
     joint.armature = settings.rotor_inertia + arms.inertia
     joint.damping[0] = settings.viscous_friction + arms.damping
     joint.stiffness[0] = arms.stiffness
@@ -57,7 +58,7 @@ def rig_model(
 def _set_motor(motor: mujoco.MjsActuator, settings: RigSettings, step: float) -> None:
     if settings.torque_limit is not None:
         motor.forcelimited = True
-        motor.forcerange = [-settings.torque_limit, settings.torque_limit]
+        motor.forcerange[:] = [-settings.torque_limit, settings.torque_limit]
     if settings.motor_lag > 0:
         motor.dyntype = mujoco.mjtDyn.mjDYN_FILTEREXACT
         motor.dynprm[0] = settings.motor_lag
@@ -71,5 +72,5 @@ def _set_sensor(sensor: mujoco.MjsSensor, settings: RigSettings, step: float) ->
         sensor.delay = settings.sensor_delay
         sensor.nsample = math.ceil(settings.sensor_delay / step - 1e-9)
     if settings.sensor_interval > step:
-        sensor.interval = [settings.sensor_interval, 0]
+        sensor.interval[:] = [settings.sensor_interval, 0]
         sensor.nsample = max(sensor.nsample, 1)

@@ -24,41 +24,62 @@ class RigSettings(Settings):
 
     table: ClassVar[str] = "rig"
 
-    name: str = Field("ideal", description="One that ships, or the path of a TOML file.")
-    description: str = Field("", description="What rig this is, and where its figures come from.")
+    name: str = Field(default="ideal", description="One that ships, or the path of a TOML file.")
+    description: str = Field(
+        default="", description="What rig this is, and where its figures come from."
+    )
     inertia: Annotated[float, Field(gt=0)] | None = Field(
-        None, description="Of all that turns about the steer axis, I_delta [kg m²]; default: what the law asks."
+        default=None,
+        description="Of all that turns about the axis [kg m²]; default: what the law asks.",
     )
     rotor_inertia: _NotNegative = Field(
-        0.0, description="Part of it that is the motor's rotor, seen through the gear [kg m²]."
+        default=0.0,
+        description="Part of it that is the motor's rotor, seen through the gear [kg m²].",
     )
-    coulomb_friction: _NotNegative = Field(0.0, description="At the steer axis [N m].")
-    viscous_friction: _NotNegative = Field(0.0, description="At the steer axis [N m s/rad].")
+    coulomb_friction: _NotNegative = Field(default=0.0, description="At the steer axis [N m].")
+    viscous_friction: _NotNegative = Field(
+        default=0.0, description="At the steer axis [N m s/rad]."
+    )
     steer_stop_deg: Annotated[float, Field(gt=1, le=180)] = Field(
-        60.0, description="Mechanical stop, each side [deg]."
+        default=60.0, description="Mechanical stop, each side [deg]."
     )
 
-    angle_resolution: _NotNegative = Field(0.0, description="One count of the steer angle [rad].")
-    angle_noise: _NotNegative = Field(0.0, description="Standard deviation, white [rad].")
-    angle_bias: float = Field(0.0, description="Offset of the steer angle [rad].")
-    rate_resolution: _NotNegative = Field(0.0, description="One count of the steer rate [rad/s].")
-    rate_noise: _NotNegative = Field(0.0, description="Standard deviation, white [rad/s].")
-    rate_bias: float = Field(0.0, description="Offset of the steer rate [rad/s].")
+    angle_resolution: _NotNegative = Field(
+        default=0.0, description="One count of the steer angle [rad]."
+    )
+    angle_noise: _NotNegative = Field(default=0.0, description="Standard deviation, white [rad].")
+    angle_bias: float = Field(default=0.0, description="Offset of the steer angle [rad].")
+    rate_resolution: _NotNegative = Field(
+        default=0.0, description="One count of the steer rate [rad/s]."
+    )
+    rate_noise: _NotNegative = Field(default=0.0, description="Standard deviation, white [rad/s].")
+    rate_bias: float = Field(default=0.0, description="Offset of the steer rate [rad/s].")
     sensor_interval: _NotNegative = Field(
-        0.0, description="Time between two sensor values [s]; 0: a new one at every physics step."
+        default=0.0,
+        description="Time between two sensor values [s]; 0: a new one at every physics step.",
     )
-    sensor_delay: _NotNegative = Field(0.0, description="Age of a sensor value when it is read [s].")
+    sensor_delay: _NotNegative = Field(
+        default=0.0, description="Age of a sensor value when it is read [s]."
+    )
     filter_cutoff: Annotated[float, Field(gt=0)] | None = Field(
-        None, description="Low pass on angle and rate alike, -3 dB [rad/s]; default: none."
+        default=None, description="Low pass on angle and rate alike, -3 dB [rad/s]; default: none."
     )
-    filter_order: Annotated[int, Field(ge=1, le=4)] = Field(2, description="Butterworth order.")
+    filter_order: Annotated[int, Field(ge=1, le=4)] = Field(
+        default=2, description="Butterworth order."
+    )
 
     torque_limit: Annotated[float, Field(gt=0)] | None = Field(
-        None, description="Of motor and drive, at the steer axis [N m]; default: none."
+        default=None, description="Of motor and drive, at the steer axis [N m]; default: none."
     )
-    torque_resolution: _NotNegative = Field(0.0, description="One count of the torque command [N m].")
-    motor_lag: _NotNegative = Field(0.0, description="Time constant from command to torque [s].")
-    motor_delay: _NotNegative = Field(0.0, description="Dead time from command to torque [s].")
+    torque_resolution: _NotNegative = Field(
+        default=0.0, description="One count of the command [N m]."
+    )
+    motor_lag: _NotNegative = Field(
+        default=0.0, description="Time constant from command to torque [s]."
+    )
+    motor_delay: _NotNegative = Field(
+        default=0.0, description="Dead time from command to torque [s]."
+    )
 
     @property
     def steer_stop(self) -> float:

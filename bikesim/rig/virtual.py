@@ -14,10 +14,16 @@ from bikesim.rig.sensing import Sensor
 from bikesim.rig.settings import RigSettings
 
 VIRTUAL_CHANNELS = (
-    Channel("rider_torque", "N m", "> 0 turns right", "T_delta of the rider model, without its arms"),
-    Channel("motor_torque", "N m", "> 0 turns right", "torque of the motor on the bar, after its lag"),
+    Channel(
+        "rider_torque", "N m", "> 0 turns right", "T_delta of the rider model, without its arms"
+    ),
+    Channel(
+        "motor_torque", "N m", "> 0 turns right", "torque of the motor on the bar, after its lag"
+    ),
     Channel("true_steer", "rad", "> 0 turns right", "steer angle without sensor errors"),
-    Channel("true_steer_rate", "rad/s", "> 0 turning to the right", "steer rate without sensor errors"),
+    Channel(
+        "true_steer_rate", "rad/s", "> 0 turning to the right", "steer rate without sensor errors"
+    ),
 )
 
 
@@ -45,7 +51,7 @@ class VirtualRig:
         self._substeps = round(period / step)
         if self._substeps < 1 or abs(self._substeps * step - period) > 1e-9:
             raise InputError(
-                f"physics_step = {step} s: the loop period of {period} s must be a whole number of it"
+                f"physics_step = {step} s: the loop period, {period} s, must be a multiple of it"
             )
         self.info = RigInfo(name, period, inertia, settings.steer_stop, VIRTUAL_CHANNELS)
         self.model = rig_model(
