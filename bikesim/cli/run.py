@@ -98,7 +98,10 @@ class Run:
 
 
 def _dated() -> Path:
-    return Path("runs") / time.strftime("%Y%m%d-%H%M%S.h5")
+    """A name of its own for a record that was given none."""
+    stem = time.strftime("%Y%m%d-%H%M%S")
+    names = (f"{stem}.h5", *(f"{stem}-{i}.h5" for i in range(2, 1000)))
+    return next(path for name in names if not (path := Path("runs") / name).exists())
 
 
 def _ride(command: Run, scenario: Scenario, output: Path) -> int:

@@ -62,15 +62,17 @@ def _set_motor(motor: mujoco.MjsActuator, settings: RigSettings, step: float) ->
     if settings.motor_lag > 0:
         motor.dyntype = mujoco.mjtDyn.mjDYN_FILTEREXACT
         motor.dynprm[0] = settings.motor_lag
-    if settings.motor_delay > 0:
-        motor.delay = settings.motor_delay
-        motor.nsample = math.ceil(settings.motor_delay / step - 1e-9)
+    motor.nsample = math.ceil(settings.motor_delay / step - 1e-9)
+    motor.delay = motor.nsample * step
 
 
 def _set_sensor(sensor: mujoco.MjsSensor, settings: RigSettings, step: float) -> None:
-    if settings.sensor_delay > 0:
-        sensor.delay = settings.sensor_delay
-        sensor.nsample = math.ceil(settings.sensor_delay / step - 1e-9)
+    steps = math.ceil(settings.sensor_delay / step - 1e-9)
+    sensor.nsample = steps
+    sensor.delay = steps * step
     if settings.sensor_interval > step:
-        sensor.interval[:] = [settings.sensor_interval, 0]
-        sensor.nsample = max(sensor.nsample, 1)
+        # MuJoCo adds up its time, and rounding moves a conversion that is due just at a step to the
+        # step beside it, now and then. Half a step away from all steps it stays where it belongs.
+        sensor.interval[:] = [settings.sensor_interval, -step / 2]
+        sensor.delay = max(0.0, steps * step - step / 2)
+        sensor.nsample = max(steps, 1)
