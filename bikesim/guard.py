@@ -21,7 +21,7 @@ class GuardSettings(Settings):
     torque_limit: Annotated[float, Field(gt=0, le=100)] = Field(
         default=10.0, description="Largest feedback torque [N m]."
     )
-    torque_rate_limit: Annotated[float, Field(gt=0)] = Field(
+    torque_rate_limit: Annotated[float, Field(gt=0, le=1e6)] = Field(
         default=300.0, description="Fastest change of the feedback torque [N m/s]."
     )
     fall_roll_deg: Annotated[float, Field(gt=0, lt=90)] = Field(
@@ -63,11 +63,11 @@ class Guard:
     def check(self, steer: float, roll: float, torque: float) -> Verdict:
         """For the measured steer angle [rad], the roll [rad] and T_f of eq. 6 [N m]."""
         if not math.isfinite(torque):
-            return Verdict(0.0, REFUSED, self._fault("feedback torque", torque))
+            return self._refuse(self._fault("feedback torque", torque))
         if not -self._fall <= roll <= self._fall:
-            return Verdict(0.0, REFUSED, self._fallen(roll))
+            return self._refuse(self._fallen(roll))
         if not -self._stop <= steer <= self._stop:
-            return Verdict(0.0, REFUSED, self._at_stop(steer))
+            return self._refuse(self._at_stop(steer))
         limited = 0
         if torque > self._limit:
             torque, limited = self._limit, CLAMPED
@@ -80,6 +80,10 @@ class Guard:
             torque, limited = self._last - self._step, limited | SLEWED
         self._last = torque
         return Verdict(torque, limited, None)
+
+    def _refuse(self, stop: Stop) -> Verdict:
+        self._last = 0.0
+        return Verdict(0.0, REFUSED, stop)
 
     def _fault(self, what: str, value: float) -> Stop:
         return Stop(f"fault: {what} is {value}", fell=False, fault=True)

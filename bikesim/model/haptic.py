@@ -29,6 +29,7 @@ class BicycleState(NamedTuple):
 
     SI and radians; roll > 0 leans right, steer and heading > 0 turn right, x forward, y right.
     `x`, `y`: rear contact [m]. `distance` travelled [m]. `feedback_torque` T_f [N m] on the bar.
+    `roll_acceleration` is q̇: φ̈ under the paper's law, φ̈ + m δ̈ under the momentum law.
     `momentum` is q of the module's text [rad/s]; `roll_forcing`, `momentum_forcing` are what the
     next step interpolates from.
     """

@@ -7,7 +7,6 @@ from pydantic import Field, model_validator
 from bikesim.errors import InputError, unknown
 from bikesim.settings import Settings
 
-_NotNegative = Annotated[float, Field(ge=0)]
 _Gain = Annotated[float, Field(ge=-1e4, le=1e4)]
 
 
@@ -38,19 +37,19 @@ class RiderSettings(Settings):
     muscle_damping_ratio: Annotated[float, Field(gt=0, le=10)] | None = Field(
         default=None, description="Neuromuscular damping ratio."
     )
-    arm_inertia: _NotNegative | None = Field(
+    arm_inertia: Annotated[float, Field(ge=0, le=10)] | None = Field(
         default=None, description="Arms about the steer axis [kg m²]."
     )
-    arm_damping: _NotNegative | None = Field(
+    arm_damping: Annotated[float, Field(ge=0, le=1000)] | None = Field(
         default=None, description="Arms about the steer axis [N m s/rad]."
     )
-    arm_stiffness: _NotNegative | None = Field(
+    arm_stiffness: Annotated[float, Field(ge=0, le=1e4)] | None = Field(
         default=None, description="Arms about the steer axis [N m/rad]."
     )
-    remnant_rms: _NotNegative | None = Field(
+    remnant_rms: Annotated[float, Field(ge=0, le=100)] | None = Field(
         default=None, description="Torque noise, root mean square [N m]."
     )
-    remnant_bandwidth: Annotated[float, Field(gt=0)] | None = Field(
+    remnant_bandwidth: Annotated[float, Field(gt=0, le=1e4)] | None = Field(
         default=None, description="Torque noise, corner of its spectrum [rad/s]."
     )
 
@@ -61,6 +60,7 @@ class RiderSettings(Settings):
             given = {"name": given}
         if not isinstance(given, dict) or not isinstance(given.get("name", "human"), str):
             return given
+        given = {key: value for key, value in given.items() if value is not None}
         name = given.get("name", "human")
         preset = _preset(name)
         for key in given:
@@ -92,8 +92,8 @@ _HUMAN = {
     "remnant_rms": 0.03,
     "remnant_bandwidth": 10.0,
 }
-# The same without delay, arms and noise, for a researcher to start from.
-_PD = {**_HUMAN, "visual_delay": 0.0, **_NO_ARMS, **_NO_NOISE}
+# The same arms, without delay and noise, for a researcher to start from; at home there too.
+_PD = {**_HUMAN, "roll_gain": 3.0, "roll_rate_gain": 5.0, "visual_delay": 0.0, **_NO_NOISE}
 _IDENTIFIED = "schwab2013-"
 
 

@@ -32,8 +32,11 @@ def rig_model(
             f"rig.rotor_inertia = {settings.rotor_inertia} kg m²: must be below the whole inertia "
             f"about the steer axis, {inertia:.6g} kg m²"
         )
+    _check_step(step, arms.stiffness, inertia + arms.inertia)
     spec = rig_spec()
     spec.option.timestep = step
+    # A state that is not finite must reach the guard, not begin again at rest as if nothing was.
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     half = steer_axis_tilt / 2
     spec.body("head").quat[:] = [math.cos(half), 0, -math.sin(half), 0]
     # Only the moment about the axis acts; three equal ones are always a possible inertia.
@@ -53,6 +56,16 @@ def rig_model(
         return spec.compile()
     except ValueError as error:
         raise InputError(f"rig: MuJoCo refuses the model: {' '.join(str(error).split())}") from None
+
+
+def _check_step(step: float, stiffness: float, inertia: float) -> None:
+    """Half a radian of the arms' own oscillation a step: 1 % of its frequency (unstable at two)."""
+    if stiffness * step**2 > 0.25 * inertia:
+        longest = 0.5 * math.sqrt(inertia / stiffness)
+        raise InputError(
+            f"physics_step = {step} s: must be at most {longest:.2g} s for arms of "
+            f"{stiffness:g} N m/rad on {inertia:.3g} kg m²"
+        )
 
 
 def _set_motor(motor: mujoco.MjsActuator, settings: RigSettings, step: float) -> None:

@@ -5,13 +5,25 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from bikesim.data import data_path
 from bikesim.errors import InputError, unknown
 from bikesim.settings import Settings
 
-_NotNegative = Annotated[float, Field(ge=0)]
+_NotNegative = Annotated[float, Field(ge=0, le=100)]
+_Noise = Annotated[float, Field(ge=0, le=10)]
+_Bias = Annotated[float, Field(ge=-10, le=10)]
+_Delay = Annotated[float, Field(ge=0, le=1)]
+
+
+def _countable(resolution: float) -> float:
+    if 0 < resolution < 1e-12:
+        raise ValueError(f"{resolution}: must be 0 (none) or at least 1e-12")
+    return resolution
+
+
+_Resolution = Annotated[float, Field(ge=0, le=10), AfterValidator(_countable)]
 
 
 class RigSettings(Settings):
@@ -28,7 +40,7 @@ class RigSettings(Settings):
     description: str = Field(
         default="", description="What rig this is, and where its figures come from."
     )
-    inertia: Annotated[float, Field(gt=0)] | None = Field(
+    inertia: Annotated[float, Field(ge=1e-4, le=1000)] | None = Field(
         default=None,
         description="Of all that turns about the axis [kg m²]; default: what the law asks.",
     )
@@ -44,42 +56,38 @@ class RigSettings(Settings):
         default=60.0, description="Mechanical stop, each side [deg]."
     )
 
-    angle_resolution: _NotNegative = Field(
+    angle_resolution: _Resolution = Field(
         default=0.0, description="One count of the steer angle [rad]."
     )
-    angle_noise: _NotNegative = Field(default=0.0, description="Standard deviation, white [rad].")
-    angle_bias: float = Field(default=0.0, description="Offset of the steer angle [rad].")
-    rate_resolution: _NotNegative = Field(
+    angle_noise: _Noise = Field(default=0.0, description="Standard deviation, white [rad].")
+    angle_bias: _Bias = Field(default=0.0, description="Offset of the steer angle [rad].")
+    rate_resolution: _Resolution = Field(
         default=0.0, description="One count of the steer rate [rad/s]."
     )
-    rate_noise: _NotNegative = Field(default=0.0, description="Standard deviation, white [rad/s].")
-    rate_bias: float = Field(default=0.0, description="Offset of the steer rate [rad/s].")
-    sensor_interval: _NotNegative = Field(
+    rate_noise: _Noise = Field(default=0.0, description="Standard deviation, white [rad/s].")
+    rate_bias: _Bias = Field(default=0.0, description="Offset of the steer rate [rad/s].")
+    sensor_interval: _Delay = Field(
         default=0.0,
         description="Time between two sensor values [s]; 0: a new one at every physics step.",
     )
-    sensor_delay: _NotNegative = Field(
+    sensor_delay: _Delay = Field(
         default=0.0, description="Age of a sensor value when it is read [s]."
     )
-    filter_cutoff: Annotated[float, Field(gt=0)] | None = Field(
+    filter_cutoff: Annotated[float, Field(ge=0.01, le=1e5)] | None = Field(
         default=None, description="Low pass on angle and rate alike, -3 dB [rad/s]; default: none."
     )
     filter_order: Annotated[int, Field(ge=1, le=4)] = Field(
         default=2, description="Butterworth order."
     )
 
-    torque_limit: Annotated[float, Field(gt=0)] | None = Field(
+    torque_limit: Annotated[float, Field(gt=0, le=1000)] | None = Field(
         default=None, description="Of motor and drive, at the steer axis [N m]; default: none."
     )
-    torque_resolution: _NotNegative = Field(
+    torque_resolution: _Resolution = Field(
         default=0.0, description="One count of the command [N m]."
     )
-    motor_lag: _NotNegative = Field(
-        default=0.0, description="Time constant from command to torque [s]."
-    )
-    motor_delay: _NotNegative = Field(
-        default=0.0, description="Dead time from command to torque [s]."
-    )
+    motor_lag: _Delay = Field(default=0.0, description="Time constant from command to torque [s].")
+    motor_delay: _Delay = Field(default=0.0, description="Dead time from command to torque [s].")
 
     @property
     def steer_stop(self) -> float:
@@ -111,6 +119,6 @@ def _read_rig(name: str) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text("utf-8"))
     except OSError as error:
-        raise InputError(f"rig {path}: {error.strerror}") from None
+        raise InputError(f"rig {path}: {(error.strerror or str(error)).lower()}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"rig {path}: not TOML: {error}") from None
