@@ -2,6 +2,11 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from bikesim.cli.parsing import Flag
 
 
 @dataclass(frozen=True)
@@ -12,11 +17,11 @@ class Paper:
     the map of what a rider can stabilise over visual delay and arm stiffness. Takes about a minute.
     """
 
-    output: Path = Path("runs/paper")
+    output: Annotated[Path, tyro.conf.arg(metavar="FOLDER")] = Path("runs/paper")
     """A folder for the figures (PNG and PDF) and paper.json."""
-    force: bool = False
+    force: Flag = False
     """Write into a folder that is there already."""
-    json: bool = False
+    json: Flag = False
     """Print JSON: one entry a claim."""
 
     def __call__(self) -> int:

@@ -1,16 +1,21 @@
 """The figure of a run: angles, torques, path."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from bikesim.record.reader import Run
 from bikesim.report.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, figure, label, styled
 
 _MOST_POINTS = 6000  # more than a page can show
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, GREY)
+_FEEDBACK, _RIDER = "feedback torque $T_f$", "rider torque $T_δ$"
+# Above the axes, where no line runs.
+_ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1, 0.98), "ncols": 4, "borderaxespad": 0}
 
 
 def run_figure(runs: Sequence[Run]) -> Figure:
@@ -28,9 +33,11 @@ def run_figure(runs: Sequence[Run]) -> Figure:
         label(path, x="forward x [m]", y="to the right y [m]")
         path.set_aspect("equal", adjustable="datalim")
         path.invert_yaxis()  # seen from above with x to the right, right is down
-        for axes in (roll, torque) if len(runs) > 1 else (torque,):
-            # Above the axes, where no line runs.
-            axes.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=4, borderaxespad=0)
+        if len(runs) > 1:
+            roll.legend(**_ABOVE)
+            torque.legend(handles=_line_styles(), **_ABOVE)
+        else:
+            torque.legend(**_ABOVE)
     return drawn
 
 
@@ -42,18 +49,24 @@ def _draw(
     name = f"{_haptics(run)}, {run.rider}" if several else ""
     roll.plot(time, np.degrees(run.channel("roll")[thin]), color=colour, label=name)
     steer.plot(time, np.degrees(run.channel("steer")[thin]), color=colour)
-    sent = "feedback torque $T_f$" + (f" ({_haptics(run)})" if several else "")
-    torque.plot(time, run.channel("sent_torque")[thin], color=colour, label=sent)
+    torque.plot(time, run.channel("sent_torque")[thin], color=colour, label=_FEEDBACK)
     if "rider_torque" in run.names:
-        rider = "rider torque $T_δ$" + (f" ({_haptics(run)})" if several else "")
         shade = colour if several else ORANGE
         style = "--" if several else "-"
         torque.plot(
-            time, run.channel("rider_torque")[thin], style, color=shade, lw=0.9, label=rider
+            time, run.channel("rider_torque")[thin], style, color=shade, lw=0.9, label=_RIDER
         )
     path.plot(run.channel("x")[thin], run.channel("y")[thin], color=colour)
     if run.ending is not None and run.ending.fell:
         roll.plot(time[-1:], np.degrees(run.channel("roll")[-1:]), "x", color=colour, ms=8, mew=2)
+
+
+def _line_styles() -> list[Line2D]:
+    """Of several runs the colour is the run, the style the torque."""
+    return [
+        Line2D([], [], color=GREY, label=_FEEDBACK),
+        Line2D([], [], color=GREY, linestyle="--", lw=0.9, label=_RIDER),
+    ]
 
 
 def _title(runs: Sequence[Run]) -> str:

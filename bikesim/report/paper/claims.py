@@ -30,7 +30,7 @@ class Claim:
             "claim": self.claim,
             "paper": self.paper,
             "ours": self.ours,
-            "holds": self.holds,
+            "holds": bool(self.holds),  # not numpy's
             "note": self.note,
         }
 

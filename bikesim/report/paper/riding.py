@@ -1,9 +1,9 @@
 """Runs in the virtual rig for the paper: kept as records, or only their roll."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bikesim.experiment.run import build, ride_parts, run
 from bikesim.experiment.scenario import Scenario
@@ -24,17 +24,25 @@ def fell(record: Run) -> bool:
     return record.ending is not None and record.ending.fell
 
 
-def grows(scenario: Scenario) -> bool:
-    """Whether the roll of a ride without noise grows: a fall, or more of it late than early.
+class RollGrowth(NamedTuple):
+    """Whether the roll of a ride without noise grows, and its peak over that at the start."""
 
-    Late is the last quarter of the ride, early the second: the first is the start's transient.
-    For the checks of a map, of which no record is kept.
+    grew: bool
+    peak_ratio: float
+
+
+def roll_growth(scenario: Scenario) -> RollGrowth:
+    """Ride without a record; the roll grew if it fell, or peaks higher in the last quarter.
+
+    That is than in the quarter before: near the limit of stability a transient rises for more than
+    10 s before it dies out.
     """
     roll = _Roll()
     ending = ride_parts(build(scenario), roll)
-    quarter = len(roll.values) // 4
-    values = np.abs(roll.array())
-    return ending.fell or bool(values[-quarter:].max() > values[quarter : 2 * quarter].max())
+    values = np.abs(np.array(roll.values))
+    quarter = len(values) // 4
+    before, last = values[-2 * quarter : -quarter].max(), values[-quarter:].max()
+    return RollGrowth(ending.fell or bool(last > before), float(values.max() / values[0]))
 
 
 class _Roll:
@@ -43,6 +51,3 @@ class _Roll:
 
     def append(self, row: tuple[float, ...]) -> None:
         self.values.append(row[_ROLL])
-
-    def array(self) -> NDArray[np.float64]:
-        return np.array(self.values)

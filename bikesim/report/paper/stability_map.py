@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bikesim.experiment.scenario import Scenario
+from bikesim.experiment.scenario import Scenario, StartSettings
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.law import Law
 from bikesim.report.paper.progress import Progress
-from bikesim.report.paper.riding import grows
+from bikesim.report.paper.riding import RollGrowth, roll_growth
 from bikesim.report.paper.tuning import BestRider, RollPDLoop, rider_settings
 from bikesim.rider.base import Arms
 
@@ -22,6 +22,7 @@ VISUAL_DELAY = 0.2  # s
 
 # Slower than this [1/s] a ride of a check's length does not tell growth from decay.
 _CLEAR = 0.1
+_CHECK_ROLL_DEG = 0.001
 
 
 class Condition(NamedTuple):
@@ -53,16 +54,16 @@ class StabilityMap:
 
 
 class Check(NamedTuple):
-    """A cell ridden in the virtual rig: whether its roll grew."""
+    """A cell ridden in the virtual rig by its best rider."""
 
     cell: Cell
     law: Law
-    grew: bool
+    roll: RollGrowth
 
     @property
     def agrees(self) -> bool:
         """Whether the ride did what the linear map says."""
-        return self.grew == (best(self.cell, self.law).growth_rate > 0)
+        return self.roll.grew == (best(self.cell, self.law).growth_rate > 0)
 
 
 def best(cell: Cell, law: Law) -> BestRider:
@@ -102,7 +103,10 @@ def solve_cell(bicycle: Bicycle, condition: Condition, neighbours: Sequence[Cell
 
 
 def check(cell: Cell, law: Law, duration: float) -> Check | None:
-    """Ride a cell in the virtual rig, from a roll of half a degree; None where it is marginal."""
+    """Ride a cell in the virtual rig for `duration` [s]; None where it is marginal.
+
+    It starts with so little roll that what grows before it dies out meets no limit of the guard.
+    """
     rider = best(cell, law)
     if abs(rider.growth_rate) < _CLEAR:
         return None
@@ -110,10 +114,10 @@ def check(cell: Cell, law: Law, duration: float) -> Check | None:
         speed=SPEED,
         law=law.value,
         rider=rider_settings(*cell.condition, rider.gains),
-        start={"roll_deg": 0.5},
+        start=StartSettings(roll_deg=_CHECK_ROLL_DEG),
         duration=duration,
     )
-    return Check(cell, law, grows(scenario))
+    return Check(cell, law, roll_growth(scenario))
 
 
 def _solve(

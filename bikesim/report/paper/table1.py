@@ -50,9 +50,10 @@ def _eigenvectors(M: NDArray[np.float64]) -> Claim:
         f"{_pair(np.abs(first))}, {_pair(np.abs(second))} in size, one sign wrong",
         f"{_pair(first)}, {_pair(second)}",
         holds=False,
-        note=f"Misprint: eigenvectors of a symmetric M are orthogonal, so one of the four components "
-        f"is negative. With a sign wrong, whichever it is, v1·v2 = ±{abs(skew):.4f} instead of "
-        f"{abs(first @ second):.0g}, and |M v - λ v| = {residual:.2f} kg m² instead of 0.",
+        note="Misprint: eigenvectors of a symmetric M are orthogonal, so one of the four "
+        "components is negative. With a sign wrong, whichever it is, v1·v2 = "
+        f"±{abs(skew):.4f} instead of {abs(first @ second):.0g}, and |M v - λ v| = "
+        f"{residual:.2f} kg m² instead of 0.",
     )
 
 
