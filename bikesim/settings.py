@@ -1,5 +1,6 @@
 """The base of everything a user sets, in TOML or on the command line: one check, one message."""
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -8,7 +9,7 @@ from bikesim.errors import InputError, unknown
 
 
 class Settings(BaseModel):
-    """A frozen, validated group of settings; unknown keys are refused.
+    """A frozen, validated group of settings; unknown keys are refused, and text for numbers.
 
     Raises InputError that names key, value and what is allowed. `table` is the group's place in
     a scenario, for the message.
@@ -16,7 +17,7 @@ class Settings(BaseModel):
 
     table: ClassVar[str] = ""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
 
     def __init__(self, **values: Any) -> None:
         try:
@@ -27,16 +28,58 @@ class Settings(BaseModel):
 
 def _one_line(model: type[Settings], error: ValidationError) -> InputError:
     first = error.errors()[0]
-    *inside, key = (model.table, *(str(part) for part in first["loc"])) if first["loc"] else ("",)
-    where = ".".join(part for part in (*inside, key) if part)
+    place = tuple(str(part) for part in first["loc"])
+    where = ".".join(part for part in (model.table, *place) if part)
     match first["type"]:
         case "extra_forbidden":
-            place = f" in [{model.table}]" if model.table else ""
-            return unknown(f"key{place}", key, model.model_fields)
+            kind = f"key of [{model.table}]" if model.table else "key"
+            return unknown(kind, place[-1], model.model_fields)
         case "value_error":
-            said = str(first.get("ctx", {})["error"])
-            return InputError(f"{where}: {said}" if where else said)
+            said = first["msg"].removeprefix("Value error, ")
+            return InputError(f"{where}: {said}" if place else said)
         case "missing":
             return InputError(f"{where}: must be given")
-    message = first["msg"].removeprefix("Input ").replace("should be", "must be")
-    return InputError(f"{where} = {first['input']!r}: {message}")
+    return InputError(f"{where} = {first['input']!r}: must be {_allowed(model, first)}")
+
+
+def _allowed(model: type[Settings], error: Mapping[str, Any]) -> str:
+    kind = error["type"]
+    if kind in _BOUNDS:
+        (key, *deeper), told = error["loc"], error["ctx"]
+        return _between(told if deeper else _bounds_of(model, key) or told)
+    if kind in ("too_long", "too_short"):
+        context = error["ctx"]
+        return f"a list of {context.get('max_length', context.get('min_length'))}"
+    if kind == "model_type" and error["loc"][-1:] in (("rider",), ("rig",)):
+        return "a name or a table"
+    return _KINDS.get(kind) or error["msg"].removeprefix("Input should be ")
+
+
+_KINDS = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "string_type": "text",
+    "tuple_type": "a list",
+    "model_type": "a table",
+}
+_BOUNDS = {
+    "greater_than_equal": ("ge", "minimum", "at least"),
+    "greater_than": ("gt", "exclusiveMinimum", "above"),
+    "less_than_equal": ("le", "maximum", "at most"),
+    "less_than": ("lt", "exclusiveMaximum", "below"),
+}
+
+
+def _bounds_of(model: type[Settings], key: str | int) -> dict[str, float]:
+    """All bounds of a number, by their short names."""
+    described = model.model_json_schema()["properties"][key]
+    for kind in (described, *described.get("anyOf", ())):
+        found = {short: kind[long] for short, long, _ in _BOUNDS.values() if long in kind}
+        if found:
+            return found
+    return {}
+
+
+def _between(bounds: Mapping[str, float]) -> str:
+    words = (f"{word} {bounds[short]:g}" for short, _, word in _BOUNDS.values() if short in bounds)
+    return " and ".join(words)

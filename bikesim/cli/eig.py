@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from bikesim.cli.output import check_output, print_json, print_table
+from bikesim.cli.output import check_figure, print_json, print_table
+from bikesim.cli.parsing import Flag
 from bikesim.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,9 +23,9 @@ class Eig:
     Each with the handlebar inertia that the law asks for. Prints a table and draws the figure.
     """
 
-    bicycle: str = "benchmark"
+    bicycle: Annotated[str, tyro.conf.arg(metavar="NAME|FILE")] = "benchmark"
     """A bicycle by name, or the path of its file; frame+rider joins two files."""
-    speeds: str = "0:10:1"
+    speeds: Annotated[str, tyro.conf.arg(metavar="SPEEDS")] = "0:10:1"
     """Forward speeds [m/s]: one (5), several (1,2.5,7), or first:last:step (0:10:0.1)."""
     gravity: Annotated[
         float | None,
@@ -48,9 +49,9 @@ class Eig:
             help_behavior_hint="",
         ),
     ] = None
-    force: bool = False
+    force: Flag = False
     """Replace a figure that is there already."""
-    json: bool = False
+    json: Flag = False
     """Print JSON instead; its lists are castering, capsize, weave, weave as [re, im] in 1/s."""
 
     def __call__(self) -> int:
@@ -62,16 +63,19 @@ class Eig:
         if self.gravity is not None:
             bicycle = bicycle.with_gravity(self.gravity)
         if self.inertia is not None and not 0 < self.inertia < 1e3:
-            raise InputError(f"--inertia {self.inertia}: from above 0 to 1000 kg m²")
+            raise InputError(f"--inertia {self.inertia}: must be above 0 and below 1000 kg m²")
+        if self.figure is not None:
+            check_figure(self.figure, force=self.force)
         table = eigenvalue_table(bicycle, speeds, self.inertia)
         if self.json:
-            print_json(table.as_json())
             if self.figure is not None:
                 self._draw(table, self.figure)
+            print_json(table.as_json())
             return 0
-        self._tell(table)
         default = Path(f"eigenvalues-{Path(bicycle.name).stem or 'bicycle'}.png")
-        print(f"\nfigure  {self._draw(table, self.figure or default)}")
+        path = self._draw(table, self.figure or default)
+        self._tell(table)
+        print(f"\nfigure  {path}")
         return 0
 
     def _tell(self, table: "EigenvalueTable") -> None:
@@ -88,8 +92,6 @@ class Eig:
         from bikesim.report.eigenvalue_figure import eigenvalue_figure
         from bikesim.report.style import save
 
-        if self.figure is not None:
-            check_output(path, force=self.force)
         save(eigenvalue_figure(table), path)
         return path
 

@@ -1,5 +1,6 @@
 """bikesim info"""
 
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -7,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from bikesim.cli.output import print_json, print_table
+from bikesim.cli.parsing import Flag
 from bikesim.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,11 +22,11 @@ class Info:
     record: Annotated[
         Path | None,
         tyro.conf.Positional,
-        tyro.conf.arg(metavar="RUN.h5", help="A run file.", help_behavior_hint=""),
+        tyro.conf.arg(metavar="[RUN.h5]", help="A run file.", help_behavior_hint=""),
     ] = None
-    scenario: bool = False
+    scenario: Flag = False
     """Print only its resolved scenario: a TOML file that runs it again."""
-    keys: bool = False
+    keys: Flag = False
     """List every key of a scenario with its default and meaning."""
     bicycle: Annotated[
         str | None,
@@ -34,18 +36,19 @@ class Info:
             help_behavior_hint="",
         ),
     ] = None
-    json: bool = False
+    json: Flag = False
     """Print JSON."""
 
     def __call__(self) -> int:
+        asked = (self.record is not None, self.keys, self.bicycle is not None)
+        if sum(asked) > 1:
+            raise InputError("info: takes a record, --keys or --bicycle, one of them at a time")
         if self.record is not None:
             return self._of_record(self.record)
         if self.scenario:
-            raise InputError("info --scenario: name a record")
+            raise InputError("info --scenario: a record is missing")
         if self.bicycle is not None:
-            from bikesim import bicycles
-
-            print(bicycles.to_toml(bicycles.load(self.bicycle)), end="")
+            self._show_bicycle(self.bicycle)
         elif self.keys:
             self._list_keys()
         else:
@@ -63,6 +66,15 @@ class Info:
         else:
             _tell(run)
         return 0
+
+    def _show_bicycle(self, name: str) -> None:
+        from bikesim import bicycles
+
+        text = bicycles.to_toml(bicycles.load(name))
+        if self.json:
+            print_json(tomllib.loads(text))
+        else:
+            print(text, end="")
 
     def _list_names(self) -> None:
         from bikesim import bicycles

@@ -7,9 +7,8 @@ interrupted where nothing could be finished.
 import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated, Protocol
-
-import tyro
+from pathlib import Path
+from typing import Protocol
 
 from bikesim import __version__
 from bikesim.cli.eig import Eig
@@ -18,25 +17,26 @@ from bikesim.cli.info import Info
 from bikesim.cli.paper import Paper
 from bikesim.cli.parsing import parse
 from bikesim.cli.plot import Plot
+from bikesim.cli.render import Render
 from bikesim.cli.replay import Replay
 from bikesim.cli.run import Run
 from bikesim.errors import InputError
 
 _DESCRIPTION = (
     "A haptic bicycle simulator (Schwab & Recuero 2013): ride a bicycle in the virtual rig, "
-    "look at its dynamics, and check both against the paper."
+    "look at its dynamics, and check both against the paper. bikesim COMMAND --help says more."
 )
 
-_command = tyro.conf.subcommand
-Command = (
-    Annotated[Run, _command("run")]
-    | Annotated[Eig, _command("eig")]
-    | Annotated[Paper, _command("paper")]
-    | Annotated[Replay, _command("replay")]
-    | Annotated[Plot, _command("plot")]
-    | Annotated[Info, _command("info")]
-    | Annotated[Export, _command("export")]
-)
+_COMMANDS = {
+    "run": Run,
+    "eig": Eig,
+    "paper": Paper,
+    "render": Render,
+    "replay": Replay,
+    "plot": Plot,
+    "info": Info,
+    "export": Export,
+}
 
 
 class _Runnable(Protocol):
@@ -45,20 +45,43 @@ class _Runnable(Protocol):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; gives the exit status."""
-    arguments = list(sys.argv[1:] if arguments is None else arguments)
-    if arguments == ["--version"]:
-        print(f"bikesim {__version__}")
-        return 0
+    if sys.stdout is None:  # closed by who started this program
+        sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115
     try:
-        command: _Runnable = parse(Command, arguments or ["--help"], _DESCRIPTION)
-        return command()
+        status = _called(list(sys.argv[1:] if arguments is None else arguments))
+        sys.stdout.flush()
+        return status
     except InputError as error:
-        print(f"bikesim: {' '.join(str(error).split())}", file=sys.stderr)
-        return 2
+        return _refused(str(error))
     except KeyboardInterrupt:
         print("bikesim: interrupted", file=sys.stderr)
         return 130
     except BrokenPipeError:
         # The reader of a pipe has gone; writing the rest would only say so again.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 0
+    except OSError as error:
+        _drop_output()
+        where = "" if error.filename is None else f"{error.filename}: "
+        return _refused(f"{where}{(error.strerror or str(error)).lower()}")
+
+
+def _called(arguments: list[str]) -> int:
+    if arguments == ["--version"]:
+        print(f"bikesim {__version__}")
+        return 0
+    command: _Runnable | None = parse(_COMMANDS, arguments, _DESCRIPTION)
+    return 0 if command is None else command()
+
+
+def _refused(message: str) -> int:
+    print(f"bikesim: {' '.join(message.split())}", file=sys.stderr)
+    return 2
+
+
+def _drop_output() -> None:
+    """What cannot be written goes nowhere, now and at the end of the program."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -2,16 +2,19 @@
 
 import json
 import math
-import sys
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from bikesim.errors import InputError
+
+FIGURES = (".png", ".pdf", ".svg")
+
 
 def print_json(value: Any) -> None:
     """One JSON document; what is not a finite number becomes null."""
-    json.dump(_finite(value), sys.stdout, indent=2, allow_nan=False)
-    print()
+    print(json.dumps(_finite(value), indent=2, allow_nan=False))
 
 
 def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) -> None:
@@ -30,6 +33,19 @@ def check_output(path: Path, *, force: bool) -> None:
     from bikesim.record.output import output_path
 
     output_path(path, force=force)
+
+
+def check_apart(path: Path, *others: Path) -> None:
+    """Refuse to write over what the same command reads or writes."""
+    if os.path.realpath(path) in map(os.path.realpath, others):
+        raise InputError(f"{path}: would replace what this command needs; give another name")
+
+
+def check_figure(path: Path, *, force: bool) -> None:
+    """As `check_output`, for a kind of figure that can be drawn."""
+    if path.suffix.lower() not in FIGURES:
+        raise InputError(f"{path}: cannot draw to {path.suffix!r}; known: {', '.join(FIGURES)}")
+    check_output(path, force=force)
 
 
 def _finite(value: Any) -> Any:

@@ -1,6 +1,7 @@
 """A scenario from its file and what was said beside it."""
 
 import tomllib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bikesim.errors import InputError
@@ -20,8 +21,8 @@ def scenario_from(options: "Run") -> Scenario:
             keys[name] = value
     if options.speed is not None:
         keys.pop("speed_profile", None)
-    if options.roll is not None:
-        _put(keys, ["start", "roll_deg"], options.roll)
+    if options.roll_deg is not None:
+        _put(keys, ["start", "roll_deg"], options.roll_deg)
     if options.push:
         keys["pushes"] = [_push(text) for text in options.push]
     for text in options.set:
@@ -29,7 +30,25 @@ def scenario_from(options: "Run") -> Scenario:
         if not equals or not name.strip():
             raise InputError(f"--set {text}: must be KEY=VALUE, such as rider.visual_delay=0.3")
         _put(keys, [part.strip() for part in name.split(".")], _value(value.strip()))
-    return Scenario(**keys)
+    return _checked(keys, options.scenario)
+
+
+def _checked(keys: dict[str, Any], path: Path | None) -> Scenario:
+    try:
+        return Scenario(**keys)
+    except InputError as error:
+        if path is not None and _says(read_toml(path), str(error)):
+            raise InputError(f"scenario {path}: {error}") from None
+        raise
+
+
+def _says(keys: dict[str, Any], message: str) -> bool:
+    """Whether the keys of a file are refused with the same words without the command line."""
+    try:
+        Scenario(**keys)
+    except InputError as error:
+        return str(error) == message
+    return False
 
 
 def _put(keys: dict[str, Any], path: list[str], value: Any) -> None:

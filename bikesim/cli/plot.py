@@ -6,15 +6,21 @@ from typing import Annotated
 
 import tyro
 
-from bikesim.cli.output import check_output
+from bikesim.cli.output import check_apart, check_figure
+from bikesim.cli.parsing import Flag
 
 
 @dataclass(frozen=True)
 class Plot:
     """Draw records: roll, steer, torques and path over time; several runs on the same axes."""
 
-    records: tyro.conf.Positional[tuple[Path, ...]]
-    """Run files, one or more."""
+    records: Annotated[
+        tuple[Path, ...],
+        tyro.conf.Positional,
+        tyro.conf.arg(
+            metavar="RUN.h5 [RUN.h5 ...]", help="Run files, one or more.", help_behavior_hint=""
+        ),
+    ]
     output: Annotated[
         Path | None,
         tyro.conf.arg(
@@ -24,7 +30,7 @@ class Plot:
             help_behavior_hint="",
         ),
     ] = None
-    force: bool = False
+    force: Flag = False
     """Replace a figure that is there already."""
 
     def __call__(self) -> int:
@@ -34,9 +40,10 @@ class Plot:
         from bikesim.report.style import save
 
         if not self.records:
-            raise InputError("plot: name at least one record")
+            raise InputError("RUN.h5 is missing (bikesim plot --help)")
         path = self.output or self.records[0].with_suffix(".png")
-        check_output(path, force=self.force)
+        check_apart(path, *self.records)
+        check_figure(path, force=self.force)
         save(run_figure([open_run(record) for record in self.records]), path)
         print(f"figure  {path}")
         return 0

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import tyro
 
 from bikesim.cli.output import print_json
+from bikesim.cli.parsing import Flag
 from bikesim.errors import InputError
 
 
@@ -20,7 +21,11 @@ class Replay:
     on a rig that plays back its steer.
     """
 
-    recording: tyro.conf.Positional[Path]
+    recording: Annotated[
+        Path,
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="RECORDING", help_behavior_hint=""),
+    ]
     """A record of ours, or a CSV whose header names time_s, roll_rad, steer_rad, roll_rate_rad_s,
     steer_rate_rad_s, torque_command_Nm and speed_m_s (others are ignored; .gz is read too)."""
     bicycle: Annotated[
@@ -53,7 +58,7 @@ class Replay:
             help_behavior_hint="",
         ),
     ] = None
-    json: bool = False
+    json: Flag = False
     """Print JSON."""
 
     def __call__(self) -> int:
@@ -74,7 +79,10 @@ class Replay:
             from bikesim.experiment.ride_again import ride_again
 
             again = ride_again(recording.run)
-            figures["max_ridden_again_torque_error_N_m"] = max(again)
+            figures["ridden_again_rows"] = again.ticks
+            figures["max_ridden_again_torque_error_N_m"] = max(
+                again.feedback_torque, again.allowed_torque
+            )
         if self.json:
             print_json(figures)
             return 0

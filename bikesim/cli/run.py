@@ -8,8 +8,9 @@ from typing import Annotated, Any
 
 import tyro
 
-from bikesim.cli.output import check_output, print_json
+from bikesim.cli.output import check_apart, check_output, print_json
 from bikesim.cli.overrides import scenario_from
+from bikesim.cli.parsing import Flag
 from bikesim.errors import InputError
 from bikesim.experiment.scenario import Scenario
 
@@ -20,8 +21,6 @@ def _described(name: str, metavar: str) -> Any:
     """The help of a scenario's key, and its default, from the scenario itself."""
     key = Scenario.model_fields[name]
     default = "" if key.default is None or key.is_required() else f" (default: {key.default})"
-    if name in ("rider", "rig"):
-        default = f" (default: {key.get_default(call_default_factory=True).name})"
     return _arg(help=f"{key.description}{default}", help_behavior_hint="", metavar=metavar)
 
 
@@ -38,7 +37,7 @@ class Run:
         Path | None,
         tyro.conf.Positional,
         _arg(
-            metavar="SCENARIO.toml",
+            metavar="[SCENARIO.toml]",
             help="A scenario file; what is given beside it replaces its keys.",
             help_behavior_hint="",
         ),
@@ -46,31 +45,44 @@ class Run:
     bicycle: Annotated[str | None, _described("bicycle", "NAME|FILE")] = None
     speed: Annotated[float | None, _described("speed", "M/S")] = None
     law: Annotated[str | None, _described("law", "{paper,momentum,off}")] = None
-    rider: Annotated[str | None, _described("rider", "NAME")] = None
-    rig: Annotated[str | None, _described("rig", "NAME|FILE")] = None
+    rider: Annotated[
+        str | None,
+        _arg(
+            metavar="NAME",
+            help="human, pd, hands-off, or schwab2013-RUN of an identified run; its figures are "
+            "set with --set (default: human).",
+            help_behavior_hint="",
+        ),
+    ] = None
+    rig: Annotated[
+        str | None,
+        _arg(
+            metavar="NAME|FILE",
+            help="A rig by name, as bikesim info lists them, or a TOML file (default: ideal).",
+            help_behavior_hint="",
+        ),
+    ] = None
     duration: Annotated[float | None, _described("duration", "S")] = None
     seed: Annotated[int | None, _described("seed", "INT")] = None
     gravity: Annotated[float | None, _described("gravity", "M/S²")] = None
     period: Annotated[float | None, _described("period", "S")] = None
     physics_step: Annotated[float | None, _described("physics_step", "S")] = None
-    roll: Annotated[
+    roll_deg: Annotated[
         float | None,
-        _arg(
-            name="roll-deg", metavar="DEG", help="Roll at the start [deg].", help_behavior_hint=""
-        ),
+        _arg(metavar="DEG", help="Roll at the start [deg].", help_behavior_hint=""),
     ] = None
     push: Annotated[
-        tuple[str, ...],
+        tyro.conf.UseAppendAction[tuple[str, ...]],
         _arg(
-            metavar="[TIME:IMPULSE ...]",
-            help="Lateral pushes: time [s], impulse to the right [N s].",
+            metavar="TIME:IMPULSE",
+            help="A lateral push: time [s], impulse to the right [N s]; may be given again.",
             help_behavior_hint="",
         ),
     ] = ()
     set: Annotated[
-        tuple[str, ...],
+        tyro.conf.UseAppendAction[tuple[str, ...]],
         _arg(
-            metavar="[KEY=VALUE ...]",
+            metavar="KEY=VALUE",
             help="Any other key of a scenario, as in its TOML: rider.visual_delay=0.3, "
             "rig.torque_limit=3.5, guard.fall_roll_deg=40. All keys: bikesim info --keys.",
             help_behavior_hint="",
@@ -85,11 +97,11 @@ class Run:
             help_behavior_hint="",
         ),
     ] = None
-    force: bool = False
+    force: Flag = False
     """Replace a record that is there already."""
-    figure: bool = False
+    figure: Flag = False
     """Also draw the run, as a PNG beside the record."""
-    json: bool = False
+    json: Flag = False
     """Print the summary as JSON."""
 
     def __call__(self) -> int:
@@ -112,6 +124,7 @@ def _ride(command: Run, scenario: Scenario, output: Path) -> int:
     from bikesim.record.reader import open_run
 
     picture = output.with_suffix(".png") if command.figure else None
+    check_apart(output, *filter(None, (command.scenario, picture)))
     if picture is not None:
         check_output(picture, force=command.force)
     parts = build(scenario)

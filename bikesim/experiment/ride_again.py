@@ -1,12 +1,12 @@
 """A record ridden again: the same loop and law, on a rig that plays back its recorded steer."""
 
+import math
 import tomllib
 from typing import NamedTuple
 
 import numpy as np
 
-from bikesim.experiment.scenario import Scenario
-from bikesim.guard import Guard
+from bikesim.guard import Guard, GuardSettings
 from bikesim.loop import Moments, Start, ride
 from bikesim.model.haptic import HapticBicycle
 from bikesim.model.law import Law
@@ -17,8 +17,12 @@ from bikesim.rig.playback import PlaybackRig
 
 
 class Difference(NamedTuple):
-    """The largest differences from the record: T_f of the law, and what the guard allowed [N m]."""
+    """The ticks ridden again, and the largest differences from the record over them [N m].
 
+    Of T_f as the law gives it, and of what the guard allows.
+    """
+
+    ticks: int
     feedback_torque: float
     allowed_torque: float
 
@@ -57,21 +61,27 @@ class _Rows:
 
 def ride_again(run: Run) -> Difference:
     """Both differences are zero where law and guard compute today what they did then."""
-    scenario = Scenario(**tomllib.loads(run.scenario))
+    # Not the whole scenario: it may name files that are no longer there.
+    scenario = tomllib.loads(run.scenario)
+    steer_stop = math.radians(scenario["rig"]["steer_stop_deg"])
     columns = (run.channel(name).tolist() for name in ("time", "steer", "steer_rate"))
     samples = [Sample(*values) for values in zip(*columns, strict=True)]
-    info = RigInfo("playback", run.period, run.handlebar_inertia, scenario.rig.steer_stop)
+    info = RigInfo("playback", run.period, run.handlebar_inertia, steer_stop)
     rows = _Rows()
     ride(
         PlaybackRig(info, samples),
         HapticBicycle(run.bicycle, Law(run.law)),
-        Guard(scenario.guard, run.period, info.steer_stop),
+        Guard(GuardSettings(**scenario["guard"]), run.period, info.steer_stop),
         rows,
         course=_RecordedCourse(run),
         start=Start(*(float(run.channel(name)[0]) for name in ("roll", "roll_rate", "heading"))),
         ticks=run.ticks + 1,
     )
-    return Difference(*(_largest(run, rows, name) for name in Difference._fields))
+    return Difference(
+        len(rows.rows),
+        _largest(run, rows, "feedback_torque"),
+        _largest(run, rows, "allowed_torque"),
+    )
 
 
 def _largest(run: Run, rows: _Rows, name: str) -> float:

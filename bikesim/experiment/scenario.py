@@ -5,7 +5,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, Strict, model_validator
 
 from bikesim.errors import InputError
 from bikesim.guard import GuardSettings
@@ -13,8 +13,12 @@ from bikesim.rider.settings import RiderSettings
 from bikesim.rig.settings import RigSettings
 from bikesim.settings import Settings
 
-_Time = Annotated[float, Field(ge=0)]
+_Time = Annotated[float, Field(ge=0, le=86400)]
 _Speed = Annotated[float, Field(ge=0, le=30)]
+_Arm = Annotated[float, Field(ge=-10, le=10)]
+_Turn = Annotated[float, Field(ge=-360, le=360)]
+# TOML has lists, not tuples.
+_List = Strict(False)
 
 
 class StartSettings(Settings):
@@ -23,8 +27,8 @@ class StartSettings(Settings):
     table: ClassVar[str] = "start"
 
     roll_deg: Annotated[float, Field(gt=-90, lt=90)] = Field(default=0.0, description="Roll [deg].")
-    roll_rate_deg_s: float = Field(default=0.0, description="Roll rate [deg/s].")
-    heading_deg: float = Field(default=0.0, description="Heading [deg].")
+    roll_rate_deg_s: _Turn = Field(default=0.0, description="Roll rate [deg/s].")
+    heading_deg: _Turn = Field(default=0.0, description="Heading [deg].")
 
 
 class Push(Settings):
@@ -33,12 +37,14 @@ class Push(Settings):
     table: ClassVar[str] = "pushes"
 
     time: _Time = Field(description="When it begins [s].")
-    impulse: float = Field(description="Lateral impulse, to the right [N s].")
-    duration: Annotated[float, Field(gt=0)] = Field(
+    impulse: Annotated[float, Field(ge=-1e4, le=1e4)] = Field(
+        description="Lateral impulse, to the right [N s]."
+    )
+    duration: Annotated[float, Field(ge=1e-3, le=100)] = Field(
         default=0.1, description="How long it lasts [s]."
     )
-    height: float = Field(default=0.9, description="Of its point above the ground [m].")
-    ahead: float = Field(default=0.3, description="Of its point before the rear contact [m].")
+    height: _Arm = Field(default=0.9, description="Of its point above the ground [m].")
+    ahead: _Arm = Field(default=0.3, description="Of its point before the rear contact [m].")
 
 
 def _ideal_rig() -> RigSettings:
@@ -56,10 +62,10 @@ class Scenario(Settings):
         default="benchmark", description="A bicycle by name, or the path of its file."
     )
     gravity: Annotated[float, Field(gt=0, le=30)] | None = Field(
-        default=None, description="[m/s²]; default: that of the bicycle's source."
+        default=None, description="Gravity [m/s²]; default: that of the bicycle's source."
     )
     speed: _Speed = Field(default=3.5, description="Forward speed [m/s].")
-    speed_profile: tuple[tuple[_Time, _Speed], ...] = Field(
+    speed_profile: Annotated[tuple[Annotated[tuple[_Time, _Speed], _List], ...], _List] = Field(
         default=(),
         description="Pairs of time [s] and speed [m/s], linear between them; replaces speed.",
     )
@@ -75,8 +81,10 @@ class Scenario(Settings):
         default_factory=_ideal_rig,
         description="A rig by name or file, or a table of its figures.",
     )
-    duration: Annotated[float, Field(gt=0, le=86400)] = Field(default=30.0, description="[s]")
-    seed: Annotated[int, Field(ge=0, lt=2**63)] = Field(default=1, description="Of all noise.")
+    duration: Annotated[float, Field(gt=0, le=86400)] = Field(
+        default=30.0, description="Of the run [s]."
+    )
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = Field(default=1, description="Seed of all noise.")
     period: Annotated[float, Field(ge=1e-4, le=0.1)] = Field(
         default=0.001, description="Of the loop [s]: 0.001 is 1 kHz."
     )
@@ -85,7 +93,9 @@ class Scenario(Settings):
         description="Of the virtual rig's physics [s]; the period is a multiple of it.",
     )
     start: StartSettings = Field(default=StartSettings(), description="The first tick.")
-    pushes: tuple[Push, ...] = Field(default=(), description="Lateral pushes on the rear frame.")
+    pushes: Annotated[tuple[Push, ...], _List] = Field(
+        default=(), description="Lateral pushes on the rear frame."
+    )
     guard: GuardSettings = Field(default=GuardSettings(), description="Limits.")
 
     @model_validator(mode="after")

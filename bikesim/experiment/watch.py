@@ -15,12 +15,14 @@ class Watch:
     and summary are made; a second one interrupts at once.
     """
 
-    def __init__(self, ticks: int, period: float, *, show: bool | None = None) -> None:
-        """Progress is shown on a terminal's stderr; `show` says otherwise."""
+    def __init__(
+        self, ticks: int, period: float, *, unit: str = "tick", show: bool | None = None
+    ) -> None:
+        """Progress in a `unit` is shown on a terminal's stderr; `show` says otherwise."""
         self._every = max(1, round(0.25 / period))
         self._left = self._every
         self._stop = False
-        self._bar = _bar(ticks, period, show)
+        self._bar = _bar(ticks, period, unit, show)
 
     def __call__(self) -> bool:
         """Whether to stop now."""
@@ -50,12 +52,12 @@ class Watch:
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-def _bar(ticks: int, period: float, show: bool | None) -> Any:
+def _bar(ticks: int, period: float, unit: str, show: bool | None) -> Any:
     from tqdm import tqdm
 
     return tqdm(
         total=ticks,
-        unit="tick",
+        unit=unit,
         unit_scale=True,
         desc=f"{ticks * period:g} s",
         leave=False,

@@ -30,7 +30,12 @@ TICK_CHANNELS = (
     Channel("steer_moment", "N m", "> 0 turns right", "disturbance T_delta put into the bicycle"),
     Channel("roll", "rad", "> 0 leans right", "roll angle of the bicycle"),
     Channel("roll_rate", "rad/s", "> 0 leaning to the right", "roll rate of the bicycle"),
-    Channel("roll_acceleration", "rad/s²", "as roll", "roll acceleration of the bicycle"),
+    Channel(
+        "roll_acceleration",
+        "rad/s²",
+        "as roll",
+        "by the roll equation; law momentum: less its part of the steer acceleration",
+    ),
     Channel("heading", "rad", "> 0 turned right", "heading (yaw) of the bicycle, eq. 8"),
     Channel("x", "m", "> 0 forward of the start", "rear contact point along the start heading"),
     Channel("y", "m", "> 0 right of the start", "rear contact point across the start heading"),
@@ -38,7 +43,7 @@ TICK_CHANNELS = (
     Channel("feedback_torque", "N m", "> 0 turns right", "T_f of eq. 6 as the law gave it"),
     Channel("allowed_torque", "N m", "> 0 turns right", "feedback torque after the guard"),
     Channel("sent_torque", "N m", "> 0 turns right", "torque that the rig says it sent"),
-    Channel("limited", "1", "bit mask", "what the guard did: 1 clamped, 2 slewed"),
+    Channel("limited", "1", "bit mask", "what the guard did: 1 clamped, 2 slewed, 4 refused"),
 )
 
 # Measured on this machine in this run: never the same twice, so kept apart.

@@ -16,6 +16,8 @@ def output_path(path: Path, *, force: bool) -> Path:
     """
     target = Path(os.path.realpath(path))
     try:
+        if file := next((p for p in target.parents if p.exists() and not p.is_dir()), None):
+            raise InputError(f"{path}: cannot be written: {file.name} is not a folder")
         if target.is_dir():
             raise InputError(f"{path}: is a folder; give the name of a file")
         if target.exists() and not target.is_file():

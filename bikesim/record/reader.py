@@ -113,7 +113,7 @@ class Run:
             raise InputError(f"{self.path}: cannot be read: {_first_line(error)}") from error
 
 
-def open_run(path: Path) -> Run:
+def open_run(path: Path | str) -> Run:
     """The run in a file. InputError if it is missing, damaged or something else."""
     path = Path(path)
     _check_kind(path)

@@ -4,6 +4,7 @@ import csv
 import gzip
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +86,7 @@ def compare(
     haptic = HapticBicycle(bicycle, _law(law, recording))
     until = _until_fall(recording.roll)
     if until < 2:
-        raise InputError(f"{recording.path}: {until} rows before the fall: at least 2 are needed")
+        raise InputError(f"{recording.path}: rows before the fall: {until}; at least 2 are needed")
     r = recording
     states = haptic.start(
         steer=r.steer[:until],
@@ -235,6 +236,9 @@ def _parse_csv(path: Path, rows: Any) -> dict[str, Values]:
             values[name].append(_cell(path, line, name, row, i))
     if not values["time_s"]:
         raise InputError(f"{path}: has a header but no rows")
+    for line, (earlier, later) in enumerate(pairwise(values["time_s"]), 3):
+        if later <= earlier:
+            raise InputError(f"{path}: line {line}: time_s = {later} does not rise from {earlier}")
     return {name: np.array(column) for name, column in values.items()}
 
 
