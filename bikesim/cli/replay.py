@@ -63,7 +63,8 @@ class Replay:
 
     def __call__(self) -> int:
         from bikesim import bicycles
-        from bikesim.record.replay import compare, read_recording
+        from bikesim.record.recording import read_recording
+        from bikesim.record.replay import compare
 
         if self.torque_limit is not None and not self.torque_limit > 0:
             raise InputError(f"--torque-limit {self.torque_limit}: must be above 0 N m")

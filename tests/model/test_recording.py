@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from bikesim.model.bicycle import Bicycle
-from bikesim.record.replay import Comparison, compare, read_recording
+from bikesim.record.recording import read_recording
+from bikesim.record.replay import Comparison, compare
 
 GRAVITY, TORQUE_LIMIT = 9.80665, 10.78125
 

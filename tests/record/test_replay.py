@@ -12,7 +12,8 @@ from bikesim.errors import InputError
 from bikesim.experiment.run import build, run
 from bikesim.experiment.scenario import Scenario
 from bikesim.model.bicycle import Bicycle
-from bikesim.record.replay import Recording, compare, read_recording
+from bikesim.record.recording import Recording, read_recording
+from bikesim.record.replay import compare
 
 LIMIT = 10.78125  # of that rig's converter [N m]
 
