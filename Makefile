@@ -11,10 +11,10 @@ export TMPDIR := $(shell cd "$${TMPDIR:-/tmp}" 2>/dev/null && [ -w . ] && pwd ||
 PY := .venv/bin/python
 READY := .venv/ready
 
-.PHONY: run test check lint types format bench lock gl clean
+.PHONY: run test check lint types format bench gallery lock gl clean
 
 run: $(READY)
-	$(PY) -m bikesim run --output runs/first.h5 --force --figure
+	$(PY) -m bikesim run --output runs/first.h5 --force --figure --video
 
 test: $(READY)
 	$(PY) -m pytest --numprocesses auto --maxprocesses 4 $(ARGS)
@@ -35,6 +35,10 @@ format: $(READY)
 bench: $(READY)
 	$(PY) -m benchmarks
 
+# Stills, the clip of haptics on and off, and the paper's figures, all from fixed seeds.
+gallery: $(READY)
+	@bash scripts/gallery.sh renders
+
 # The newest versions that pyproject.toml allows, for every platform and Python; no address gets in.
 lock: $(READY)
 	$(PY) -m uv pip compile --quiet --upgrade --universal --python-version 3.11 --all-extras \
@@ -51,4 +55,5 @@ clean:
 
 $(READY): pyproject.toml requirements.lock scripts/setup.sh
 	@bash scripts/setup.sh
+	@$(MAKE) --no-print-directory gl || echo "setup: without them there are no videos" >&2
 	@touch $@

@@ -3,7 +3,7 @@
 import sys
 from importlib import import_module
 
-BENCHMARKS = ("accuracy", "riders", "tick", "kill")
+BENCHMARKS = ("accuracy", "riders", "tick", "video", "kill")
 
 
 def main(names: list[str]) -> int:

@@ -11,6 +11,7 @@ import tyro
 from bikesim.cli.output import check_apart, check_output, print_json
 from bikesim.cli.overrides import scenario_from
 from bikesim.cli.parsing import Flag
+from bikesim.cli.render import check_kind, render_run
 from bikesim.errors import InputError
 from bikesim.experiment.scenario import Scenario
 
@@ -101,6 +102,14 @@ class Run:
     """Replace a record that is there already."""
     figure: Flag = False
     """Also draw the run, as a PNG beside the record."""
+    video: Annotated[
+        tuple[Path, ...] | None,
+        _arg(
+            metavar="[FILE]",
+            help="Also make a video of the run, .mp4, .webm or .gif (default: beside the record).",
+            help_behavior_hint="",
+        ),
+    ] = None
     json: Flag = False
     """Print the summary as JSON."""
 
@@ -116,6 +125,18 @@ def _dated() -> Path:
     return next(path for name in names if not (path := Path("runs") / name).exists())
 
 
+def _video_path(command: Run, output: Path) -> Path | None:
+    """Where the video goes, if there is to be one; refused before the run where it cannot."""
+    if command.video is None:
+        return None
+    if len(command.video) > 1:
+        raise InputError(f"--video: takes one file, not {len(command.video)}")
+    path = command.video[0] if command.video else output.with_suffix(".mp4")
+    check_kind(path, still=False)
+    check_output(path, force=command.force)
+    return path
+
+
 def _ride(command: Run, scenario: Scenario, output: Path) -> int:
     from bikesim.cli.telling import inertia_told, summary_json, summary_told
     from bikesim.experiment.run import build, inertia_error, run
@@ -124,7 +145,8 @@ def _ride(command: Run, scenario: Scenario, output: Path) -> int:
     from bikesim.record.reader import open_run
 
     picture = output.with_suffix(".png") if command.figure else None
-    check_apart(output, *filter(None, (command.scenario, picture)))
+    video = _video_path(command, output)
+    check_apart(output, *filter(None, (command.scenario, picture, video)))
     if picture is not None:
         check_output(picture, force=command.force)
     parts = build(scenario)
@@ -139,10 +161,14 @@ def _ride(command: Run, scenario: Scenario, output: Path) -> int:
         from bikesim.report.style import save
 
         save(run_figure([record]), picture)
+    if not command.json:
+        print(summary_told(scenario, summary, picture), flush=True)
+    filmed = video is not None and render_run(record, video, force=command.force)
     if command.json:
-        print_json(summary_json(summary))
-    else:
-        print(summary_told(scenario, summary, picture))
+        told = summary_json(summary)
+        print_json(told if video is None else {**told, "video": str(video) if filmed else None})
+    elif filmed:
+        print(f"video   {video}")
     if summary.reason.startswith("fault"):
         raise InputError(f"{summary.reason} at tick {summary.ticks}; kept: {summary.record}")
     return 0

@@ -2,6 +2,7 @@
 
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -21,7 +22,7 @@ class Watch:
         """Progress in a `unit` is shown on a terminal's stderr; `show` says otherwise."""
         self._every = max(1, round(0.25 / period))
         self._left = self._every
-        self._stop = False
+        self._stop, self._stopped = False, 0.0
         self._bar = _bar(ticks, period, unit, show)
 
     def __call__(self) -> bool:
@@ -44,11 +45,14 @@ class Watch:
             self._bar.close()
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
-        if self._stop:
+        now = time.monotonic()
+        # Wrappers such as timeout(1) send the same signal twice.
+        if self._stop and now - self._stopped > _ONE_SIGNAL:
             raise KeyboardInterrupt
-        self._stop = True
+        self._stop, self._stopped = True, now
 
 
+_ONE_SIGNAL = 0.3  # [s]
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 

@@ -1,0 +1,64 @@
+"""The rider's display: a bicycle with its rider on a country road."""
+
+import mujoco
+from numpy.typing import NDArray
+
+from bikesim.errors import unknown
+from bikesim.model.bicycle import Bicycle
+from bikesim.view.contact import wheel_geometry
+from bikesim.view.cyclist import Cyclist
+from bikesim.view.ground import add_ground
+from bikesim.view.pose import Pose
+from bikesim.view.ribbon import Ribbon
+from bikesim.view.world import World, world_spec
+
+_OWN_BODY = 3  # the group of mjcf/world.xml that the rider's own eyes do not see
+_SHADE, _HIDDEN = (0.03, 0.04, 0.05, 0.075), (0, 0, 0, 0)
+
+
+class RoadScene:
+    """Views "first", from the rider's eyes, and "second", from behind; see `Scene`."""
+
+    views = ("first", "second")
+
+    def __init__(self, bicycle: Bicycle, *, path: NDArray | None, roll_cue: bool) -> None:
+        spec = world_spec()
+        self._cyclist = Cyclist(spec, wheel_geometry(bicycle))
+        self._world = World(spec)
+        self._ribbon = None if path is None else Ribbon(spec, path)
+        add_ground(spec, ribbon=path is None)
+        self._roll_cue = roll_cue
+        self.model: mujoco.MjModel = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        self._world.bind(self.model)
+        if self._ribbon:
+            self._ribbon.bind(self.model)
+        self._cyclist.bind(self.model)
+        self._shade = self.model.geom("shade").id
+        self.show(Pose(0, 0, 0, 0, 0, 0, 0, 0))
+
+    def show(self, pose: Pose) -> None:
+        roll = pose.roll if self._roll_cue else 0.0
+        self._world.place(self.model, self.data, pose.x, -pose.y, pose.heading)
+        if self._ribbon:
+            self._ribbon.place(self.data, pose.x, -pose.y)
+        self._cyclist.show(self.model, self.data, pose.heading, roll, pose.steer, pose.distance)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def camera(self, view: str) -> str:
+        if view not in self.views:
+            raise unknown("view", view, self.views)
+        return view
+
+    def option(self, view: str) -> mujoco.MjvOption:
+        option = mujoco.MjvOption()
+        option.geomgroup[_OWN_BODY] = self.camera(view) != "first"
+        return option
+
+    def prepare(self, drawn: mujoco.MjvScene) -> None:
+        # OpenGL's fog would hide the sky, which is as far off as anything.
+        drawn.flags[mujoco.mjtRndFlag.mjRND_FOG] = False
+        drawn.flags[mujoco.mjtRndFlag.mjRND_HAZE] = False
+        # Where no shadow is cast, a soft one under the wheels holds the bicycle to the ground.
+        cast = bool(drawn.flags[mujoco.mjtRndFlag.mjRND_SHADOW])
+        self.model.geom_rgba[self._shade] = _HIDDEN if cast else _SHADE

@@ -1,0 +1,1 @@
+"""What is drawn, as triangles: the bicycle's parts, the rider, the land."""

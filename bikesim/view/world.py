@@ -1,0 +1,138 @@
+"""The land and the road about the bicycle, which stays at the origin while they move past it."""
+
+import math
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from bikesim.data import data_path
+from bikesim.errors import InputError
+from bikesim.view import textures
+from bikesim.view.shapes import land
+from bikesim.view.shapes.land import SQUARE, STRETCH, WINDOW
+from bikesim.view.shapes.mesh import add_mesh
+from bikesim.view.shapes.plants import FAR, NEAR
+
+_NEAR_ENOUGH = 105.0  # m to the middle of a piece, within which it is drawn finely
+_LEVEL, _SUNK = 150.0, 350.0  # m: farther things sink, as if over the horizon, until not drawn
+_DEPTH = 11.0  # m, more than the highest tree
+_BEHIND = 70.0  # m behind the bicycle, from where on no view shows what stands there
+_ASIDE = 1.8  # m to the side for each metre forward: wider than any view, leaning or not
+_FIELDS, _ROADSIDES = 9, 4  # different ones
+
+Array = NDArray[np.float64]
+
+
+def world_spec() -> mujoco.MjSpec:
+    """mjcf/world.xml, painted, still to be changed. Raises InputError."""
+    path = data_path("mjcf", "world.xml")
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        raise InputError(f"{path}: {' '.join(str(error).split())}") from None
+    textures.paint(spec)
+    return spec
+
+
+class World:
+    """Adds the land to a model, and puts it where it belongs for a place of the bicycle.
+
+    Each piece lies at one place of a window of `WINDOW` metres; when it is half a window behind,
+    it reappears as far ahead, both along the road and across. The land is thus periodic.
+    """
+
+    def __init__(self, spec: mujoco.MjSpec) -> None:
+        _add_shapes(spec)
+        pieces = _pieces()
+        for piece in pieces:
+            body = spec.worldbody.add_body(name=piece.name, mocap=True)
+            for detail in ("near", "far"):
+                body.add_geom(
+                    spec.find_default("mesh"),
+                    name=f"{piece.name} {detail}",
+                    meshname=f"{piece.shape} {detail}",
+                )
+        self._names = [piece.name for piece in pieces]
+        self._homes = np.array([piece.home for piece in pieces])
+        self._along = np.array([piece.along for piece in pieces])
+
+    def bind(self, model: mujoco.MjModel) -> None:
+        """Looks up the pieces in the compiled model."""
+        self._mocap = _mocap_ids(model, self._names)
+        self._near = np.array([model.geom(f"{name} near").id for name in self._names])
+        self._far = np.array([model.geom(f"{name} far").id for name in self._names])
+        self._ground, self._road = _mocap_ids(model, ["ground", "road"])
+
+    def place(
+        self, model: mujoco.MjModel, data: mujoco.MjData, x: float, y: float, heading: float
+    ) -> None:
+        """Moves all to where a bicycle at x, y (y to the left) [m] sees it.
+
+        What is behind it or far off is not drawn. Far things rise out of the ground as they come
+        nearer, so that none appears suddenly. `heading` > 0 is to the right [rad].
+        """
+        here = np.array([x, y])
+        wrapped = _wrapped(self._homes - here, WINDOW)
+        wrapped[self._along, 1] = -y
+        distance = np.hypot(wrapped[:, 0], wrapped[:, 1])
+        far = np.clip((distance - _LEVEL) / (_SUNK - _LEVEL), 0, 1)
+        data.mocap_pos[self._mocap, :2] = wrapped
+        data.mocap_pos[self._mocap, 2] = -_DEPTH * far**1.5
+        drawn, near = _in_sight(wrapped, heading) & (far < 1), distance < _NEAR_ENOUGH
+        model.geom_rgba[self._near, 3] = drawn & near
+        model.geom_rgba[self._far, :3] = 1.0
+        model.geom_rgba[self._far, 3] = (drawn & ~near) * (1 - 0.6 * far)
+        data.mocap_pos[self._ground, :2] = _wrapped(-here, textures.GRASS_PERIOD)
+        data.mocap_pos[self._road, :2] = [_wrapped(-here, textures.ASPHALT_PERIOD)[0], -y]
+
+
+def _in_sight(offset: Array, heading: float) -> NDArray[np.bool_]:
+    """Which places, as seen from the bicycle [m], may be in a picture."""
+    forward = offset @ [math.cos(heading), -math.sin(heading)] + _BEHIND
+    aside = offset @ [math.sin(heading), math.cos(heading)]
+    return (forward > 0) & (np.abs(aside) < _ASIDE * forward)
+
+
+def _wrapped(offset: Array, period: float) -> Array:
+    """Moved by whole periods to within half of one; rounded, so that equal places look equal."""
+    return np.round(offset - period * np.round(offset / period), 7)
+
+
+def _mocap_ids(model: mujoco.MjModel, names: list[str]) -> NDArray[np.int64]:
+    return np.array([model.body_mocapid[model.body(name).id] for name in names])
+
+
+class _Piece(NamedTuple):
+    """A piece of land: its shape, its home in the window [m], if it only moves along the road."""
+
+    name: str
+    shape: str
+    home: tuple[float, float]
+    along: bool
+
+
+def _pieces() -> list[_Piece]:
+    """All of the window; the middle row of squares has the road in it."""
+    pieces = []
+    count = round(WINDOW / SQUARE)
+    for i in range(count):
+        for j in range(count):
+            kind, variant = ("field", (2 * i + 5 * j + i * j) % _FIELDS) if j else ("verge", i)
+            home = (i * SQUARE, j * SQUARE)
+            pieces.append(_Piece(f"{kind} at {i} {j}", f"{kind} {variant % _FIELDS}", home, False))
+    for k in range(round(WINDOW / STRETCH)):
+        shape = f"roadside {(3 * k) % _ROADSIDES}"
+        pieces.append(_Piece(f"roadside at {k}", shape, (k * STRETCH, 0.0), True))
+    return pieces
+
+
+def _add_shapes(spec: mujoco.MjSpec) -> None:
+    """The meshes of the pieces, fine and coarse."""
+    for name, detail in (("near", NEAR), ("far", FAR)):
+        for k in range(_FIELDS):
+            add_mesh(spec, f"field {k} {name}", land.field(k, detail, road=False))
+            add_mesh(spec, f"verge {k} {name}", land.field(k, detail, road=True))
+        for k in range(_ROADSIDES):
+            add_mesh(spec, f"roadside {k} {name}", land.stretch(k, detail))
