@@ -8,8 +8,9 @@ from scipy.optimize import least_squares
 from bikesim import bicycles
 from bikesim.experiment.run import build, ride_parts
 from bikesim.experiment.scenario import Scenario, StartSettings
-from bikesim.model.eigen import bicycle_modes, simulator_modes
+from bikesim.model.eigen import bicycle_modes, name_modes
 from bikesim.model.law import Law
+from bikesim.model.realisation import coded_state_matrix
 from bikesim.model.sampled import sampled_eigenvalues
 from bikesim.rider.settings import RiderSettings
 
@@ -48,20 +49,18 @@ def published_error() -> float:
 
 
 def momentum_error() -> float:
-    """The largest distance over the largest eigenvalue, every shipped bicycle, 0 to 10 m/s."""
-    return max(
-        float(
-            np.abs(
-                np.subtract(
-                    simulator_modes(bicycle, Law.MOMENTUM, speed).all(),
-                    bicycle_modes(bicycle, speed).all(),
-                )
-            ).max()
-            / np.abs(bicycle_modes(bicycle, speed).all()).max()
-        )
-        for bicycle in map(bicycles.load, bicycles.names())
-        for speed in np.arange(0, 10.001, 0.05)
-    )
+    """The largest distance over the largest eigenvalue, every shipped bicycle, 0 to 10 m/s.
+
+    Of the law as it is coded, not of the formula that says that they are equal.
+    """
+    worst = 0.0
+    for bicycle in map(bicycles.load, bicycles.names()):
+        for speed in np.arange(0, 10.001, 0.05).tolist():
+            coded = np.linalg.eigvals(coded_state_matrix(bicycle, Law.MOMENTUM, speed))
+            ours = np.array(name_modes(coded.astype(complex)).all())
+            true = np.array(bicycle_modes(bicycle, speed).all())
+            worst = max(worst, float(np.abs(ours - true).max() / np.abs(true).max()))
+    return worst
 
 
 _FITTED = Scenario(

@@ -2,6 +2,6 @@
 
 import sys
 
-from bikesim.cli.main import main
+from bikesim.cli.entry import main
 
 sys.exit(main())

@@ -27,11 +27,15 @@ class Settings(BaseModel):
 
 
 def _one_line(model: type[Settings], error: ValidationError) -> InputError:
-    first = error.errors()[0]
+    errors = error.errors()
+    # A key that is misspelt is missing too, but that is not what is wrong with it.
+    misspelt = (one for one in errors if one["type"] == "extra_forbidden")
+    first = next(misspelt, errors[0])
     place = tuple(str(part) for part in first["loc"])
     where = ".".join(part for part in (model.table, *place) if part)
     match first["type"]:
         case "extra_forbidden":
+            model = _innermost(model, place[:-1])
             kind = f"key of [{model.table}]" if model.table else "key"
             return unknown(kind, place[-1], model.model_fields)
         case "value_error":
@@ -39,7 +43,12 @@ def _one_line(model: type[Settings], error: ValidationError) -> InputError:
             return InputError(f"{where}: {said}" if place else said)
         case "missing":
             return InputError(f"{where}: must be given")
-    return InputError(f"{where} = {first['input']!r}: must be {_allowed(model, first)}")
+    return InputError(f"{where} = {_shown(first['input'])}: must be {_allowed(model, first)}")
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
 
 
 def _allowed(model: type[Settings], error: Mapping[str, Any]) -> str:
@@ -68,6 +77,16 @@ _BOUNDS = {
     "less_than_equal": ("le", "maximum", "at most"),
     "less_than": ("lt", "exclusiveMaximum", "below"),
 }
+
+
+def _innermost(model: type[Settings], place: tuple[str, ...]) -> type[Settings]:
+    """The model of the table at a place."""
+    for part in place:
+        field = model.model_fields.get(part)
+        kind = None if field is None else field.annotation
+        if isinstance(kind, type) and issubclass(kind, Settings):
+            model = kind
+    return model
 
 
 def _bounds_of(model: type[Settings], key: str | int) -> dict[str, float]:

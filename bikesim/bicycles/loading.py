@@ -5,13 +5,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from bikesim.bicycles.body import BODY_KEYS, RigidBody, with_rider
-from bikesim.bicycles.files import is_there, located, read_text
+from bikesim.bicycles.files import is_there, read_text
 from bikesim.bicycles.keyvalues import KeyValues, parse_key_values
 from bikesim.bicycles.shipped import names, shipped_text
 from bikesim.bicycles.toml_reader import bicycle_from_toml, rider_from_toml
 from bikesim.errors import InputError, unknown
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.parameters import PARAMETER_NAMES, BicycleParameters
+from bikesim.textfile import located
 
 
 def load_bicycle(name_or_path: str | os.PathLike[str]) -> Bicycle:

@@ -14,7 +14,7 @@ or, where only the linearised equations are known,
 """
 
 import math
-import tomllib
+import unicodedata
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -24,6 +24,7 @@ from bikesim.errors import InputError, unknown
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.parameters import PARAMETER_NAMES, BicycleParameters
 from bikesim.model.whipple import Matrices, Matrix
+from bikesim.textfile import parse_toml
 
 Table = Mapping[str, object]
 
@@ -63,10 +64,7 @@ def rider_from_toml(text: str) -> RigidBody:
 
 
 def _document(text: str) -> Table:
-    try:
-        document = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"is not TOML: {error}") from error
+    document = parse_toml(text)
     _only(document, _TOP_KEYS, "")
     return document
 
@@ -132,6 +130,8 @@ def _string(document: Table, key: str, default: str) -> str:
     value = document.get(key, default)
     if not isinstance(value, str) or not value.strip():
         raise InputError(f"{key} = {value!r}: must be a text that is not empty")
+    if any(unicodedata.category(character) in ("Cc", "Zl", "Zp") for character in value):
+        raise InputError(f"{key} = {value!r}: must be one line without control characters")
     return value
 
 

@@ -1,5 +1,6 @@
 """bikesim eig"""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -72,11 +73,21 @@ class Eig:
                 self._draw(table, self.figure)
             print_json(table.as_json())
             return 0
-        default = Path(f"eigenvalues-{Path(bicycle.name).stem or 'bicycle'}.png")
-        path = self._draw(table, self.figure or default)
+        if self.figure is not None:
+            self._draw(table, self.figure)
         self._tell(table)
-        print(f"\nfigure  {path}")
+        print(f"\nfigure  {self.figure or self._draw_beside(table)}")
         return 0
+
+    def _draw_beside(self, table: "EigenvalueTable") -> str:
+        """The figure that nobody named: made where it can be, the table is there all the same."""
+        name = re.sub(r"[^\w.+-]+", "-", Path(table.bicycle.name).name).removesuffix(".txt")
+        path = Path(f"eigenvalues-{name}.png")
+        try:
+            check_figure(path, force=self.force)
+            return str(self._draw(table, path))
+        except InputError as error:
+            return f"not drawn: {error}"
 
     def _tell(self, table: "EigenvalueTable") -> None:
         print(f"{table.bicycle.name}: {table.bicycle.source}\n")

@@ -144,7 +144,7 @@ def _percentiles(run: "Run") -> dict[str, float]:
 
 def _tell(run: "Run") -> None:
     about = described(run)
-    ended = about["reason"] if run.complete else "cut short: its program was killed"
+    ended = about["reason"] if run.complete else "not closed: killed, or still running"
     print(f"{run.path}: {run.ticks} ticks of {run.period:g} s; {ended}")
     for key in ("bicycle", "law", "rider", "rig", "seed", "handlebar_inertia_kg_m2", "created"):
         print(f"  {key.replace('_kg_m2', ' [kg m²]').replace('_', ' ')}: {about[key]}")

@@ -7,7 +7,6 @@ interrupted where nothing could be finished.
 import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Protocol
 
 from bikesim import __version__
@@ -20,6 +19,7 @@ from bikesim.cli.plot import Plot
 from bikesim.cli.render import Render
 from bikesim.cli.replay import Replay
 from bikesim.cli.run import Run
+from bikesim.cli.surroundings import ended_by_signals, prepare_streams
 from bikesim.errors import InputError
 
 _DESCRIPTION = (
@@ -45,17 +45,22 @@ class _Runnable(Protocol):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; gives the exit status."""
-    if sys.stdout is None:  # closed by who started this program
-        sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115
+    prepare_streams()
+    try:
+        with ended_by_signals():
+            return _answered(arguments)
+    except KeyboardInterrupt:
+        print("bikesim: interrupted", file=sys.stderr)
+        return 130
+
+
+def _answered(arguments: Sequence[str] | None) -> int:
     try:
         status = _called(list(sys.argv[1:] if arguments is None else arguments))
         sys.stdout.flush()
         return status
     except InputError as error:
         return _refused(str(error))
-    except KeyboardInterrupt:
-        print("bikesim: interrupted", file=sys.stderr)
-        return 130
     except BrokenPipeError:
         # The reader of a pipe has gone; writing the rest would only say so again.
         _drop_output()

@@ -64,6 +64,8 @@ def _value(text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         return text
+    except RecursionError:
+        raise InputError(f"--set: {text[:20]}... is nested too deeply") from None
 
 
 def _push(text: str) -> dict[str, float]:

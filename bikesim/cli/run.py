@@ -119,10 +119,10 @@ class Run:
 
 
 def _dated() -> Path:
-    """A name of its own for a record that was given none."""
-    stem = time.strftime("%Y%m%d-%H%M%S")
-    names = (f"{stem}.h5", *(f"{stem}-{i}.h5" for i in range(2, 1000)))
-    return next(path for name in names if not (path := Path("runs") / name).exists())
+    """A name of its own for a record that was given none, also beside others of this second."""
+    now = time.time_ns()
+    stem = time.strftime("%Y%m%d-%H%M%S", time.localtime(now // 10**9))
+    return Path("runs") / f"{stem}-{now // 1000 % 10**6:06d}.h5"
 
 
 def _video_path(command: Run, output: Path) -> Path | None:

@@ -1,11 +1,11 @@
 """A record ridden again: the same loop and law, on a rig that plays back its recorded steer."""
 
 import math
-import tomllib
 from typing import NamedTuple
 
 import numpy as np
 
+from bikesim.errors import InputError
 from bikesim.guard import Guard, GuardSettings
 from bikesim.loop import Moments, Start, ride
 from bikesim.model.haptic import HapticBicycle
@@ -14,6 +14,7 @@ from bikesim.record.channels import TICK_CHANNELS
 from bikesim.record.reader import Run
 from bikesim.rig.base import RigInfo, Sample
 from bikesim.rig.playback import PlaybackRig
+from bikesim.textfile import parse_toml
 
 
 class Difference(NamedTuple):
@@ -61,9 +62,7 @@ class _Rows:
 
 def ride_again(run: Run) -> Difference:
     """Both differences are zero where law and guard compute today what they did then."""
-    # Not the whole scenario: it may name files that are no longer there.
-    scenario = tomllib.loads(run.scenario)
-    steer_stop = math.radians(scenario["rig"]["steer_stop_deg"])
+    steer_stop, limits = _limits(run)
     columns = (run.channel(name).tolist() for name in ("time", "steer", "steer_rate"))
     samples = [Sample(*values) for values in zip(*columns, strict=True)]
     info = RigInfo("playback", run.period, run.handlebar_inertia, steer_stop)
@@ -71,7 +70,7 @@ def ride_again(run: Run) -> Difference:
     ride(
         PlaybackRig(info, samples),
         HapticBicycle(run.bicycle, Law(run.law)),
-        Guard(GuardSettings(**scenario["guard"]), run.period, info.steer_stop),
+        Guard(limits, run.period, info.steer_stop),
         rows,
         course=_RecordedCourse(run),
         start=Start(*(float(run.channel(name)[0]) for name in ("roll", "roll_rate", "heading"))),
@@ -82,6 +81,18 @@ def ride_again(run: Run) -> Difference:
         _largest(run, rows, "feedback_torque"),
         _largest(run, rows, "allowed_torque"),
     )
+
+
+def _limits(run: Run) -> tuple[float, GuardSettings]:
+    """The steer stop [rad] and the guard; not more, as a scenario may name files now gone."""
+    try:
+        scenario = parse_toml(run.scenario)
+        stop = math.radians(scenario["rig"]["steer_stop_deg"])
+        return stop, GuardSettings(**scenario["guard"])
+    except KeyError as error:
+        raise InputError(f"{run.path}: its scenario is damaged: {error} is missing") from None
+    except (InputError, TypeError) as error:
+        raise InputError(f"{run.path}: its scenario is damaged: {error}") from None
 
 
 def _largest(run: Run, rows: _Rows, name: str) -> float:

@@ -95,16 +95,20 @@ def run(
         seed=scenario.seed,
         provenance=Provenance.gather(),
     )
-    with RunWriter(
-        output,
-        channels=(*TICK_CHANNELS, *info.channels),
-        period=info.period,
-        planned_ticks=scenario.ticks,
-        header=header,
-        force=force,
-    ) as record:
-        ending = ride_parts(parts, record, interrupted)
-        record.finish(ending)
+    try:
+        with RunWriter(
+            output,
+            channels=(*TICK_CHANNELS, *info.channels),
+            period=info.period,
+            planned_ticks=scenario.ticks,
+            header=header,
+            force=force,
+        ) as record:
+            ending = ride_parts(parts, record, interrupted)
+            record.finish(ending)
+    finally:
+        # Also where the record could not be opened, and the loop never began.
+        parts.rig.close()
     return ending
 
 

@@ -1,13 +1,12 @@
 """What a run is: everything a user may set, validated; TOML in, TOML out."""
 
-import tomllib
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, Strict, model_validator
 
-from bikesim.errors import InputError
+from bikesim import textfile
 from bikesim.guard import GuardSettings
 from bikesim.rider.settings import RiderSettings
 from bikesim.rig.settings import RigSettings
@@ -117,14 +116,7 @@ class Scenario(Settings):
 
 def read_toml(path: Path) -> dict[str, Any]:
     """A scenario file's keys, not yet checked. Raises InputError."""
-    try:
-        return tomllib.loads(path.read_text("utf-8"))
-    except OSError as error:
-        raise InputError(f"scenario {path}: {(error.strerror or str(error)).lower()}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"scenario {path}: is not text; a scenario is a TOML file") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"scenario {path}: not TOML: {error}") from None
+    return textfile.read_toml(path, "scenario")
 
 
 def to_toml(scenario: Scenario) -> str:

@@ -31,7 +31,7 @@ class Summary(NamedTuple):
 def summarise(run: Run) -> Summary:
     """The summary of a record; the feedback torque is what was really sent."""
     wall = run.timing("wall_time")
-    ending = run.ending or Ending("cut short: its program was killed")
+    ending = run.ending or Ending("not closed: killed, or still running")
     return Summary(
         record=str(run.path),
         reason=ending.reason,

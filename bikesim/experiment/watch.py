@@ -4,7 +4,7 @@ import signal
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
@@ -12,8 +12,8 @@ from typing import Any
 class Watch:
     """Asked at every tick whether to stop; shows progress on the way.
 
-    Ctrl-C and SIGTERM while `watching` end the run after the tick in progress, so that its record
-    and summary are made; a second one interrupts at once.
+    Ctrl-C, SIGTERM and SIGHUP while `watching` end the run after the tick in progress, so
+    that its record and summary are made; a second one interrupts at once.
     """
 
     def __init__(
@@ -28,7 +28,7 @@ class Watch:
     def __call__(self) -> bool:
         """Whether to stop now."""
         self._left -= 1
-        if self._left == 0:
+        if self._left == 0 and not self._stop:
             self._left = self._every
             self._bar.update(self._every)
         return self._stop
@@ -36,13 +36,14 @@ class Watch:
     @contextmanager
     def watching(self) -> Iterator["Watch"]:
         """Takes the signals for as long as a run lasts."""
-        before = {number: signal.signal(number, self._on_signal) for number in _SIGNALS}
+        before = {number: signal.signal(number, self._on_signal) for number in taken_signals()}
         try:
             yield self
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
-            self._bar.close()
+            with suppress(OSError):  # the terminal may be gone
+                self._bar.close()
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
         now = time.monotonic()
@@ -53,7 +54,16 @@ class Watch:
 
 
 _ONE_SIGNAL = 0.3  # [s]
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_SIGNALS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+
+
+def taken_signals() -> tuple[signal.Signals, ...]:
+    """Those that end a program; not the hangup that nohup(1) has it ignore."""
+    hangup = getattr(signal, "SIGHUP", None)
+    deaf = hangup is not None and signal.getsignal(hangup) is signal.SIG_IGN
+    return tuple(number for number in _SIGNALS if not (deaf and number is hangup))
 
 
 def _bar(ticks: int, period: float, unit: str, show: bool | None) -> Any:

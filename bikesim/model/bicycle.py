@@ -32,6 +32,12 @@ class Bicycle:
             raise InputError(f"bicycle {self.name}: wheelbase = {self.wheelbase}: must be above 0")
         if not math.isfinite(self.trail):
             raise InputError(f"bicycle {self.name}: trail = {self.trail}: must be finite")
+        if not 1e-3 <= self.wheelbase <= 100:
+            raise InputError(
+                f"bicycle {self.name}: wheelbase = {self.wheelbase}: from 0.001 to 100 m"
+            )
+        if abs(self.trail) > 100:
+            raise InputError(f"bicycle {self.name}: trail = {self.trail}: from -100 to 100 m")
         if not abs(self.steer_axis_tilt) < math.pi / 2:
             raise InputError(
                 f"bicycle {self.name}: steer axis tilt = {self.steer_axis_tilt}: "

@@ -42,15 +42,18 @@ def eigenvalues(mass: Matrix, damping: Matrix, stiffness: Matrix) -> np.ndarray:
 def name_modes(values: np.ndarray) -> Modes:
     """Name four eigenvalues [1/s] by their place in the plane, not by following them in speed.
 
-    A complex pair is the weave and the two real ones are castering (the more stable) and capsize.
-    Four real ones, as at low speed: weave is the two least stable, since the weave pair is born of
-    them. Two pairs: weave is the less stable pair. Naming by place survives double roots and
-    zeros, where following a root from speed to speed must guess.
+    Castering is the most stable. A complex pair is the weave, the two real ones castering and
+    capsize; but a pair that is more stable than both real ones is castering and capsize met, and
+    the real ones are the weave that is not born yet. Four real ones, as at low speed: weave is the
+    two least stable, of which the pair is born. Two pairs: weave is the less stable pair. Naming
+    by place survives double roots and zeros, where following a root from speed to speed must guess.
     """
     in_order = sorted(values, key=lambda s: (s.real, s.imag))
     pairs = [s for s in in_order if s.imag > 0]
     if len(pairs) == 1:
         real = [s for s in in_order if s.imag == 0]
+        if pairs[0].real < real[0].real:
+            return Modes(pairs[0], pairs[0].conjugate(), (real[0], real[1]))
         return Modes(real[0], real[1], (pairs[0], pairs[0].conjugate()))
     if len(pairs) == 2:
         stable, weave = pairs

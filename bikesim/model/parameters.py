@@ -55,6 +55,8 @@ class BicycleParameters:
                 raise InputError(
                     f"bicycle parameter {name} = {getattr(self, name)}: must be above 0"
                 )
+        for name in PARAMETER_NAMES:
+            _check_size(name, getattr(self, name))
         if abs(self.lam) >= math.pi / 2:
             raise InputError(
                 f"bicycle parameter lam = {self.lam}: the steer axis tilt is in radians, "
@@ -75,6 +77,22 @@ class BicycleParameters:
                 )
 
 
+def _check_size(name: str, value: float) -> None:
+    least, most, unit = _SIZES["r" if name == "w" else name[0]]
+    least = least if name in _POSITIVE else -most
+    if not least <= value <= most:
+        raise InputError(
+            f"bicycle parameter {name} = {value}: must be from {least:g} to {most:g}{unit}"
+        )
+
+
+# By the first letter of a parameter: the least if it is positive, the most. Far beyond any bicycle.
+_SIZES = {
+    "m": (1e-3, 1e5, " kg"),
+    "I": (1e-9, 1e6, " kg m²"),
+    **dict.fromkeys("rcxz", (1e-3, 100.0, " m")),
+    "l": (0.0, math.inf, ""),  # the tilt has limits of its own
+}
 # fmt: off
 _POSITIVE = (
     "w", "rR", "rF", "mR", "mB", "mH", "mF",

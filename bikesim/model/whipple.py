@@ -10,13 +10,17 @@ from bikesim.model.parameters import BicycleParameters
 
 Matrix = NDArray[np.float64]
 
+# Far beyond any bicycle's; what lies beyond them cannot be computed with.
+_LARGEST, _LEAST_INERTIA = 1e9, 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class Matrices:
     """M q̈ + v C1 q̇ + (g K0 + v² K2) q = (T_φ, T_δ), with q = (roll φ, steer δ) [M07 eq. 5.3].
 
     Each is 2 x 2 and read-only. M [kg m²], C1 [kg m], K0 [kg m], K2 [kg].
-    Raises InputError if one is not finite or M is not symmetric and positive definite.
+    Raises InputError if one is not finite or beyond ±1e9, or M is not symmetric and positive
+    definite.
     """
 
     M: Matrix
@@ -31,12 +35,19 @@ class Matrices:
                 raise InputError(f"matrix {name} has shape {matrix.shape}: must be 2 x 2")
             if not np.isfinite(matrix).all():
                 raise InputError(f"matrix {name} = {matrix.tolist()}: must be finite")
+            if np.abs(matrix).max() > _LARGEST:
+                raise InputError(f"matrix {name} = {matrix.tolist()}: must be within ±{_LARGEST:g}")
             matrix.flags.writeable = False
             object.__setattr__(self, name, matrix)
         if not np.isclose(self.M[0, 1], self.M[1, 0], rtol=1e-9, atol=0):
             raise InputError(f"mass matrix M = {self.M.tolist()}: must be symmetric")
         if self.M[0, 0] <= 0 or np.linalg.det(self.M) <= 0:
             raise InputError(f"mass matrix M = {self.M.tolist()}: must be positive definite")
+        if min(self.M[0, 0], self.M[1, 1]) < _LEAST_INERTIA:
+            raise InputError(
+                f"mass matrix M = {self.M.tolist()}: must have at least {_LEAST_INERTIA:g} "
+                "on its diagonal"
+            )
 
     def damping(self, speed: float) -> Matrix:
         """C = v C1 [N m s/rad], 2 x 2, for a forward speed v [m/s]."""

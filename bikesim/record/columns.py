@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bikesim.record.layout import Layout
+from bikesim.record.output import hold
 
 _PIECE = 1 << 20  # ticks that are filled or copied at once
 
@@ -24,6 +25,7 @@ class Columns:
         time = layout.columns.index("channels/time")
         self._order = [column for column in range(len(self._places)) if column != time] + [time]
         self._file = path.open("r+b", buffering=0)
+        hold(self._file.fileno())
 
     def __enter__(self) -> Self:
         return self

@@ -1,6 +1,7 @@
 """Files that we write: refused before anything is touched, put in place in one step."""
 
 import contextlib
+import fcntl
 import os
 import re
 from collections.abc import Iterator
@@ -24,6 +25,8 @@ def output_path(path: Path, *, force: bool) -> Path:
             raise InputError(f"{path}: is not a plain file; give the name of one")
         if target.exists() and not force:
             raise InputError(f"{path}: is already there; --force replaces it")
+        if target.exists() and _in_use(target):
+            raise InputError(f"{path}: another run is writing it")
         target.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise unwritable(path, error) from error
@@ -31,8 +34,24 @@ def output_path(path: Path, *, force: bool) -> Path:
 
 
 def part_path(path: Path) -> Path:
-    """Where a file lies until it is whole: beside it, hidden, always under the same name."""
-    return path.with_name(f".{path.name}.part")
+    """Where a file lies until it is whole: beside it, hidden, and this process's own."""
+    return path.with_name(f".{path.name}.{os.getpid()}.part")
+
+
+def hold(file: int) -> None:
+    """Mark an open file as being written, for as long as this process has it open."""
+    # A record lock, not flock: HDF5 uses that, and a run may be read while it is written.
+    with contextlib.suppress(OSError):
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def _in_use(path: Path) -> bool:
+    with contextlib.suppress(OSError), path.open("rb+") as file:
+        try:
+            fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
 
 
 def unwritable(path: Path, error: OSError | RuntimeError, kept: str = "") -> InputError:

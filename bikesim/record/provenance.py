@@ -34,7 +34,7 @@ class Provenance:
             bikesim=bikesim.__version__,
             commit=source_commit(Path(bikesim.__file__).parents[1]),
             python=platform.python_version(),
-            platform=platform.platform(),
+            platform=_platform(),
             mujoco=_installed("mujoco"),
             numpy=_installed("numpy"),
             scipy=_installed("scipy"),
@@ -44,10 +44,20 @@ class Provenance:
         )
 
 
+def _platform() -> str:
+    try:
+        return platform.platform()  # may read files and start programs
+    except (OSError, subprocess.SubprocessError):
+        return "unknown"
+
+
 def source_commit(root: Path) -> str | None:
     """The commit of the git work tree whose root is `root`; None if it is not one."""
     # Without this check an environment inside some other repository would give that one's commit.
-    if not (root / ".git").exists():
+    try:
+        if not (root / ".git").exists():
+            return None
+    except OSError:
         return None
     lines = _git_status(root).splitlines()
     oid = next((line.split()[-1] for line in lines if line.startswith("# branch.oid ")), None)

@@ -17,6 +17,7 @@ from bikesim.record.channels import Channel
 from bikesim.record.header import Ending
 from bikesim.record.layout import FORMAT, FORMAT_VERSION
 from bikesim.record.provenance import Provenance
+from bikesim.textfile import is_special
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -128,6 +129,8 @@ def open_run(path: Path | str) -> Run:
 def _check_kind(path: Path) -> None:
     if path.is_dir():
         raise InputError(f"{path}: is a folder, not a run file")
+    if is_special(path):
+        raise InputError(f"{path}: is not a plain file, so not a run file")
     try:
         with path.open("rb") as file:
             start = file.read(len(_SIGNATURE))

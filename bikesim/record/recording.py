@@ -15,6 +15,7 @@ from bikesim.errors import InputError
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.law import Law
 from bikesim.record.reader import Run, open_run
+from bikesim.textfile import is_special
 
 Values = NDArray[np.float64]
 
@@ -72,10 +73,18 @@ def _from_run(run: Run) -> Recording:
     )
 
 
-_CSV_COLUMNS = (
-    "time_s", "speed_m_s", "roll_rad", "roll_rate_rad_s", "steer_rad", "steer_rate_rad_s",
-    "torque_command_Nm",
-)  # fmt: skip
+# What a recording has, and what a value can be; far beyond any rig's.
+_CSV_COLUMNS = {
+    "time_s": (-1e10, 1e10),
+    "speed_m_s": (0.0, 100.0),
+    "roll_rad": (-100.0, 100.0),
+    "roll_rate_rad_s": (-1e4, 1e4),
+    "steer_rad": (-100.0, 100.0),
+    "steer_rate_rad_s": (-1e4, 1e4),
+    "torque_command_Nm": (-1e4, 1e4),
+}
+
+_LONGEST_STEP = 10.0  # [s]
 
 
 def _from_csv(path: Path) -> Recording:
@@ -97,9 +106,11 @@ def _from_csv(path: Path) -> Recording:
 
 
 def _read_csv(path: Path) -> dict[str, Values]:
+    if is_special(path):
+        raise InputError(f"{path}: is not a plain file, so not a recording")
     opened = gzip.open if path.suffix.lower() == ".gz" else open
     try:
-        with opened(path, "rt", encoding="utf-8", newline="") as file:
+        with opened(path, "rt", encoding="utf-8-sig", newline="") as file:
             return _parse_csv(path, csv.reader(file))
     except (OSError, EOFError) as error:
         why = getattr(error, "strerror", None) or str(error)
@@ -127,6 +138,11 @@ def _parse_csv(path: Path, rows: Any) -> dict[str, Values]:
     for line, (earlier, later) in enumerate(pairwise(values["time_s"]), 3):
         if later <= earlier:
             raise InputError(f"{path}: line {line}: time_s = {later} does not rise from {earlier}")
+        if later - earlier > _LONGEST_STEP:
+            raise InputError(
+                f"{path}: line {line}: time_s = {later} is more than {_LONGEST_STEP:g} s "
+                f"after {earlier}"
+            )
     return {name: np.array(column) for name, column in values.items()}
 
 
@@ -139,4 +155,9 @@ def _cell(path: Path, line: int, name: str, row: list[str], i: int) -> float:
         raise InputError(f"{path}: line {line}: {name} = {row[i]!r} is not a number") from None
     if not math.isfinite(value):
         raise InputError(f"{path}: line {line}: {name} = {row[i]} is not finite")
+    least, most = _CSV_COLUMNS[name]
+    if not least <= value <= most:
+        raise InputError(
+            f"{path}: line {line}: {name} = {row[i]}: must be from {least:g} to {most:g}"
+        )
     return value

@@ -1,15 +1,15 @@
 """What a rig is: its sensors, motor, friction and inertia, as figures with a source."""
 
 import math
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Field, model_validator
 
 from bikesim.data import data_path
-from bikesim.errors import InputError, unknown
+from bikesim.errors import unknown
 from bikesim.settings import Settings
+from bikesim.textfile import located, read_toml
 
 _NotNegative = Annotated[float, Field(ge=0, le=100)]
 _Noise = Annotated[float, Field(ge=0, le=10)]
@@ -100,8 +100,17 @@ class RigSettings(Settings):
         if isinstance(given, str):
             given = {"name": given}
         if isinstance(given, dict) and isinstance(given.get("name", "ideal"), str):
-            return {**_read_rig(given.get("name", "ideal")), **given}
+            return {**cls._named(given.get("name", "ideal")), **given}
         return given
+
+    @classmethod
+    def _named(cls, name: str) -> dict[str, Any]:
+        keys = _read_rig(name)
+        if Path(name).suffix == ".toml":
+            # What is wrong in the file is to be told with its name.
+            with located(f"rig {name}"):
+                cls(**{**keys, "name": "ideal"})
+        return keys
 
 
 def rig_names() -> tuple[str, ...]:
@@ -116,9 +125,4 @@ def _read_rig(name: str) -> dict[str, Any]:
         if name not in rig_names():
             raise unknown("rig", name, rig_names())
         path = data_path("hardware", "rigs", f"{name}.toml")
-    try:
-        return tomllib.loads(path.read_text("utf-8"))
-    except OSError as error:
-        raise InputError(f"rig {path}: {(error.strerror or str(error)).lower()}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"rig {path}: not TOML: {error}") from None
+    return read_toml(path, "rig")

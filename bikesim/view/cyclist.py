@@ -170,5 +170,5 @@ def _add(
 ) -> None:  # fmt: skip
     """A mesh on a body; `own` is what the rider must not have before his eyes."""
     add_mesh(spec, name, mesh)
-    look = spec.find_default("own body" if own else "mesh")
+    look = spec.find_default("own body" if own else "bicycle")
     spec.body(body).add_geom(look, name=name, meshname=name, material=material)

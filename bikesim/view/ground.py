@@ -30,7 +30,7 @@ def add_ground(spec: mujoco.MjSpec, *, ribbon: bool) -> None:
 
 def _add(spec: mujoco.MjSpec, body: mujoco.MjsBody, name: str, mesh: Mesh, material: str) -> None:
     add_mesh(spec, name, mesh)
-    body.add_geom(spec.find_default("mesh"), name=name, meshname=name, material=material)
+    body.add_geom(spec.find_default("land"), name=name, meshname=name, material=material)
 
 
 def _meadow() -> Mesh:

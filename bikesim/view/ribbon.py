@@ -21,6 +21,7 @@ _JOIN = 4
 _BLOCK = _JOIN * _JOIN
 _FINE, _MIDDLE, _FAR = 24.0, 85.0, 330.0  # m, up to where pieces of each length are laid
 _POOLS = (96, 80, 64)
+_STEP = 0.0002  # m
 _AWAY = -5.0  # m, under the ground: where a piece is that is not needed
 
 Array = NDArray[np.float64]
@@ -44,7 +45,7 @@ class Ribbon:
             add_mesh(spec, f"ribbon {k}", _sheet(0.5 * piece * stride + 0.25 * HALF_WIDTH))
             for n in range(_POOLS[k]):
                 body = spec.worldbody.add_body(name=f"ribbon {k} {n}", mocap=True)
-                body.add_geom(spec.find_default("mesh"), meshname=f"ribbon {k}")
+                body.add_geom(spec.find_default("land"), meshname=f"ribbon {k}")
 
     def bind(self, model: mujoco.MjModel) -> None:
         """Looks up the pieces in the compiled model."""
@@ -75,7 +76,8 @@ class Ribbon:
         data.mocap_pos[pool] = [0, 0, _AWAY]
         used = pool[: len(chosen)]
         data.mocap_pos[used, :2] = np.round(pieces.middles[chosen] - here, 7)
-        data.mocap_pos[used, 2] = 0.0
+        # Two sheets in one plane would be lit twice where they overlap.
+        data.mocap_pos[used, 2] = _STEP * (2 * level + chosen % 2)
         data.mocap_quat[used] = 0.0
         data.mocap_quat[used, 0] = np.cos(0.5 * pieces.yaw[chosen])
         data.mocap_quat[used, 3] = np.sin(0.5 * pieces.yaw[chosen])

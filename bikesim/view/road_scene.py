@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from bikesim.errors import unknown
 from bikesim.model.bicycle import Bicycle
 from bikesim.view.contact import wheel_geometry
+from bikesim.view.crops import Crops
 from bikesim.view.cyclist import Cyclist
 from bikesim.view.ground import add_ground
 from bikesim.view.pose import Pose
@@ -25,12 +26,14 @@ class RoadScene:
         spec = world_spec()
         self._cyclist = Cyclist(spec, wheel_geometry(bicycle))
         self._world = World(spec)
+        self._crops = Crops(spec)
         self._ribbon = None if path is None else Ribbon(spec, path)
         add_ground(spec, ribbon=path is None)
         self._roll_cue = roll_cue
         self.model: mujoco.MjModel = spec.compile()
         self.data = mujoco.MjData(self.model)
         self._world.bind(self.model)
+        self._crops.bind(self.model)
         if self._ribbon:
             self._ribbon.bind(self.model)
         self._cyclist.bind(self.model)
@@ -39,7 +42,8 @@ class RoadScene:
 
     def show(self, pose: Pose) -> None:
         roll = pose.roll if self._roll_cue else 0.0
-        self._world.place(self.model, self.data, pose.x, -pose.y, pose.heading)
+        for part in (self._world, self._crops):
+            part.place(self.model, self.data, pose.x, -pose.y, pose.heading)
         if self._ribbon:
             self._ribbon.place(self.data, pose.x, -pose.y)
         self._cyclist.show(self.model, self.data, pose.heading, roll, pose.steer, pose.distance)

@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 
 GRASS_PERIOD = 24.0  # m, and 1 / the texrepeat of the material in mjcf/world.xml
 ASPHALT_PERIOD = 12.0  # m
+ROWS_PERIOD = 12.0  # m
 _HAZE = (0.80, 0.86, 0.89)  # over the horizon
 _SUN = (-0.44, 0.36, 0.82)  # towards it: against the light's direction in mjcf/world.xml
 _ZENITH = (0.25, 0.49, 0.80)
@@ -25,6 +26,7 @@ def paint(spec: mujoco.MjSpec) -> None:
     """Puts the painted textures in the place of the plain ones of mjcf/world.xml."""
     replace_texture(spec.texture("grass"), grass())
     replace_texture(spec.texture("asphalt"), asphalt())
+    replace_texture(spec.texture("rows"), rows())
     replace_texture(spec.texture("colours"), palette())
     replace_texture(spec.texture("sky"), sky())
 
@@ -72,6 +74,15 @@ def asphalt() -> NDArray[np.uint8]:
         for offset in range(-width + 1, width):
             light[column, (crooked + offset) % size] *= dark
     return _bytes(np.array([0.475, 0.48, 0.495]) * light[..., None])
+
+
+@cache
+def rows() -> NDArray[np.uint8]:
+    """A field of `ROWS_PERIOD` in eight rows along x, without a colour of its own."""
+    size = 256
+    across = np.sin(2 * math.pi * 8 * np.arange(size) / size)[:, None]
+    light = 0.80 + 0.10 * across + 0.05 * noise(size, 0.4, 21, coarsest=8)
+    return _bytes(np.repeat((light + 0.03 * noise(size, 1.3, 22))[..., None], 3, axis=2))
 
 
 @cache

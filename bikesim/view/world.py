@@ -1,11 +1,9 @@
 """The land and the road about the bicycle, which stays at the origin while they move past it."""
 
-import math
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from bikesim.data import data_path
 from bikesim.errors import InputError
@@ -14,15 +12,12 @@ from bikesim.view.shapes import land
 from bikesim.view.shapes.land import SQUARE, STRETCH, WINDOW
 from bikesim.view.shapes.mesh import add_mesh
 from bikesim.view.shapes.plants import FAR, NEAR
+from bikesim.view.window import in_sight, mocap_ids, wrapped
 
 _NEAR_ENOUGH = 105.0  # m to the middle of a piece, within which it is drawn finely
 _LEVEL, _SUNK = 150.0, 350.0  # m: farther things sink, as if over the horizon, until not drawn
 _DEPTH = 11.0  # m, more than the highest tree
-_BEHIND = 70.0  # m behind the bicycle, from where on no view shows what stands there
-_ASIDE = 1.8  # m to the side for each metre forward: wider than any view, leaning or not
 _FIELDS, _ROADSIDES = 9, 4  # different ones
-
-Array = NDArray[np.float64]
 
 
 def world_spec() -> mujoco.MjSpec:
@@ -50,7 +45,7 @@ class World:
             body = spec.worldbody.add_body(name=piece.name, mocap=True)
             for detail in ("near", "far"):
                 body.add_geom(
-                    spec.find_default("mesh"),
+                    spec.find_default("land"),
                     name=f"{piece.name} {detail}",
                     meshname=f"{piece.shape} {detail}",
                 )
@@ -60,10 +55,10 @@ class World:
 
     def bind(self, model: mujoco.MjModel) -> None:
         """Looks up the pieces in the compiled model."""
-        self._mocap = _mocap_ids(model, self._names)
+        self._mocap = mocap_ids(model, self._names)
         self._near = np.array([model.geom(f"{name} near").id for name in self._names])
         self._far = np.array([model.geom(f"{name} far").id for name in self._names])
-        self._ground, self._road = _mocap_ids(model, ["ground", "road"])
+        self._ground, self._road = mocap_ids(model, ["ground", "road"])
 
     def place(
         self, model: mujoco.MjModel, data: mujoco.MjData, x: float, y: float, heading: float
@@ -74,34 +69,18 @@ class World:
         nearer, so that none appears suddenly. `heading` > 0 is to the right [rad].
         """
         here = np.array([x, y])
-        wrapped = _wrapped(self._homes - here, WINDOW)
-        wrapped[self._along, 1] = -y
-        distance = np.hypot(wrapped[:, 0], wrapped[:, 1])
+        offset = wrapped(self._homes - here, WINDOW)
+        offset[self._along, 1] = -y
+        distance = np.hypot(offset[:, 0], offset[:, 1])
         far = np.clip((distance - _LEVEL) / (_SUNK - _LEVEL), 0, 1)
-        data.mocap_pos[self._mocap, :2] = wrapped
+        data.mocap_pos[self._mocap, :2] = offset
         data.mocap_pos[self._mocap, 2] = -_DEPTH * far**1.5
-        drawn, near = _in_sight(wrapped, heading) & (far < 1), distance < _NEAR_ENOUGH
+        drawn, near = in_sight(offset, heading) & (far < 1), distance < _NEAR_ENOUGH
         model.geom_rgba[self._near, 3] = drawn & near
         model.geom_rgba[self._far, :3] = 1.0
         model.geom_rgba[self._far, 3] = (drawn & ~near) * (1 - 0.6 * far)
-        data.mocap_pos[self._ground, :2] = _wrapped(-here, textures.GRASS_PERIOD)
-        data.mocap_pos[self._road, :2] = [_wrapped(-here, textures.ASPHALT_PERIOD)[0], -y]
-
-
-def _in_sight(offset: Array, heading: float) -> NDArray[np.bool_]:
-    """Which places, as seen from the bicycle [m], may be in a picture."""
-    forward = offset @ [math.cos(heading), -math.sin(heading)] + _BEHIND
-    aside = offset @ [math.sin(heading), math.cos(heading)]
-    return (forward > 0) & (np.abs(aside) < _ASIDE * forward)
-
-
-def _wrapped(offset: Array, period: float) -> Array:
-    """Moved by whole periods to within half of one; rounded, so that equal places look equal."""
-    return np.round(offset - period * np.round(offset / period), 7)
-
-
-def _mocap_ids(model: mujoco.MjModel, names: list[str]) -> NDArray[np.int64]:
-    return np.array([model.body_mocapid[model.body(name).id] for name in names])
+        data.mocap_pos[self._ground, :2] = wrapped(-here, textures.GRASS_PERIOD)
+        data.mocap_pos[self._road, :2] = [wrapped(-here, textures.ASPHALT_PERIOD)[0], -y]
 
 
 class _Piece(NamedTuple):

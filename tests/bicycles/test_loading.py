@@ -114,7 +114,7 @@ def test_a_missing_file(name):
 
 
 def test_a_missing_rider_file(folder):
-    assert refusal("PistaPar.txt+nobody.txt") == "nobody.txt: no such file"
+    assert refusal("PistaPar.txt+nobody.txt") == "nobody.txt: no such file or directory"
 
 
 def test_a_missing_frame_file(folder):

@@ -99,6 +99,14 @@ def test_a_table_and_a_figure_without_json(cli, tmp_path):
     assert (tmp_path / "eigenvalues-benchmark.png").stat().st_size > 10_000
 
 
+def test_the_figure_that_nobody_named_replaces_nothing(cli, tmp_path):
+    (tmp_path / "eigenvalues-benchmark.png").write_text("precious")
+    said = cli("eig", "--speeds", 5)
+    assert said.status == 0
+    assert "not drawn: eigenvalues-benchmark.png: is already there; --force replaces it" in said.out
+    assert (tmp_path / "eigenvalues-benchmark.png").read_text() == "precious"
+
+
 def test_a_second_figure_under_a_given_name_needs_force(cli, refusal):
     assert cli("eig", "--figure", "e.svg").status == 0
     assert "e.svg: is already there; --force" in refusal("eig", "--figure", "e.svg")

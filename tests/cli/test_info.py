@@ -1,3 +1,4 @@
+import os
 import tomllib
 from pathlib import Path
 
@@ -97,3 +98,8 @@ def test_a_bicycle_as_our_toml(cli):
 )
 def test_what_cannot_be_asked(refusal, arguments: list, message: str):
     assert message in refusal("info", *arguments)
+
+
+def test_a_pipe_is_no_record(refusal, tmp_path: Path):
+    os.mkfifo(tmp_path / "pipe")
+    assert "pipe: is not a plain file, so not a run file" in refusal("info", "pipe")

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 import resource
 import signal
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from bikesim.cli import entry
 from bikesim.record.reader import open_run
 
 LONG = ("run", "--duration", 400, "--output", "run.h5")
@@ -31,7 +33,9 @@ def riding(process, tmp_path: Path):
     began.communicate()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda s: s.name)
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name
+)
 def test_a_signal_ends_a_run_with_its_record_and_summary(riding, tmp_path: Path, number):
     riding.send_signal(number)
     out, err = riding.communicate(timeout=30)
@@ -45,6 +49,20 @@ def test_a_signal_ends_a_run_with_its_record_and_summary(riding, tmp_path: Path,
     assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
 
 
+def test_a_record_in_use_is_not_taken_by_another_run(riding, process, tmp_path: Path):
+    second = process("run", "--duration", 1, "--output", "run.h5", "--force")
+    out, err = second.communicate(timeout=30)
+    assert (second.returncode, out) == (2, "")
+    assert err == "bikesim: run.h5: another run is writing it\n"
+    assert riding.poll() is None
+
+
+def test_two_runs_at_once_have_a_record_each(process, tmp_path: Path):
+    both = [process("run", "--duration", 1) for _ in range(2)]
+    assert [run.wait(30) for run in both] == [0, 0]
+    assert len(list((tmp_path / "runs").glob("*.h5"))) == 2
+
+
 class TestKilled:
     @pytest.fixture
     def killed(self, riding) -> None:
@@ -55,7 +73,7 @@ class TestKilled:
     def test_its_record_opens_and_info_says_so(self, cli):
         said = cli("info", "run.h5")
         assert said.status == 0
-        assert "cut short: its program was killed" in said.out.splitlines()[0]
+        assert "not closed: killed, or still running" in said.out.splitlines()[0]
         about = cli("info", "run.h5", "--json").json
         assert (about["complete"], about["reason"], about["fell"]) == (False, None, None)
         assert about["ticks"] > 1000
@@ -121,6 +139,24 @@ class TestOutput:
         assert (ran.returncode, ran.stderr) == (0, "")
 
 
+def test_a_run_without_stderr_has_its_record(tmp_path: Path):
+    command = [sys.executable, "-m", "bikesim", "run", "--duration", "0.1", "--output", "run.h5"]
+    shell = ["sh", "-c", 'exec "$@" 2>&-', "sh", *command]
+    assert subprocess.run(shell, cwd=tmp_path, capture_output=True, check=False).returncode == 0
+    assert open_run(tmp_path / "run.h5").complete
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "ascii"])
+@pytest.mark.parametrize("arguments", [("info", "--keys"), ("run", "--set", "φ=1")], ids=" ".join)
+def test_symbols_that_cannot_be_printed_are_no_error(process, encoding: str, arguments):
+    begun = process(
+        *arguments, env={**os.environ, "PYTHONIOENCODING": encoding}, encoding="latin-1"
+    )
+    out, err = begun.communicate(timeout=30)
+    assert "Traceback" not in err
+    assert (out or err).count("?") > 0
+
+
 def test_a_run_into_a_pipe_that_nobody_reads_has_its_record(process, tmp_path: Path):
     begun = process("run", "--duration", 0.5, "--output", "run.h5")
     begun.stdout.close()
@@ -155,6 +191,36 @@ def test_ctrl_c_where_nothing_can_be_finished(process):
     begun.send_signal(signal.SIGINT)
     out, err = begun.communicate(timeout=30)
     assert (begun.returncode, out, err) == (130, "", "bikesim: interrupted\n")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name)
+def test_a_signal_leaves_nothing_half_done(process, tmp_path: Path, number: int):
+    begun = process("paper", "--output", "paper", preexec_fn=_takes_hangups)
+    deadline = time.monotonic() + 30
+    while not list(tmp_path.iterdir()):
+        assert begun.poll() is None, begun.communicate()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    begun.send_signal(number)
+    _, err = begun.communicate(timeout=30)
+    assert (begun.returncode, err) == (130, "bikesim: interrupted\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_ctrl_c_during_the_imports(monkeypatch: pytest.MonkeyPatch, capsys):
+    class Interrupted:
+        def find_spec(self, name: str, *_: object) -> None:
+            if name == "bikesim.cli.main":
+                raise KeyboardInterrupt
+
+    monkeypatch.delitem(sys.modules, "bikesim.cli.main")
+    monkeypatch.setattr(sys, "meta_path", [Interrupted(), *sys.meta_path])
+    assert entry.main() == 130
+    assert capsys.readouterr().err == "bikesim: interrupted\n"
+
+
+def _takes_hangups() -> None:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def _takes_interrupts() -> None:

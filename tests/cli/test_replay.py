@@ -1,4 +1,5 @@
 import gzip
+import os
 from pathlib import Path
 
 import pytest
@@ -127,10 +128,13 @@ CHANGES = {
     "text": (cell(5, 3, "left"), "line 5: steer_rad = 'left' is not a number"),
     "nothing": (cell(5, 3, ""), "line 5: steer_rad = '' is not a number"),
     "nan": (cell(5, 3, "nan"), "line 5: steer_rad = nan is not finite"),
+    "speed": (cell(5, -1, "1e200"), "line 5: speed_m_s = 1e200: must be from 0 to 100"),
+    "angle": (cell(5, 3, "-101"), "line 5: steer_rad = -101: must be from -100 to 100"),
     "cut row": (lambda lines: [*lines[:9], lines[9][:20]], "line 10: has no"),
     "blank row": (lambda lines: [*lines[:9], "", *lines[9:]], "line 10: has no time_s"),
     "time back": (cell(5, 0, "9"), "line 6: time_s = 0.004 does not rise from 9.0"),
     "time still": (cell(5, 0, "0.002"), "line 5: time_s = 0.002 does not rise from 0.002"),
+    "a gap": (cell(50, 0, "1e9"), "line 50: time_s = 1000000000.0 is more than 10 s after"),
     "no rows": (lambda lines: lines[:1], "has a header but no rows"),
     "one row": (lambda lines: lines[:2], "rows before the fall: 1; at least 2 are needed"),
     "empty": (lambda lines: [], "a recording"),
@@ -168,6 +172,18 @@ def test_a_packed_file_that_is_damaged(refusal, recording: Path, tmp_path: Path)
 
 def test_a_file_that_is_not_packed(refusal, written):
     assert "r.csv.gz: cannot be read: not a gzipped file" in refusal("replay", written("r.csv.gz"))
+
+
+@pytest.mark.parametrize("name", ["pipe", "pipe.csv", "pipe.csv.gz"])
+def test_a_pipe(refusal, tmp_path: Path, name: str):
+    os.mkfifo(tmp_path / name)
+    assert f"{name}: is not a plain file" in refusal("replay", name)
+
+
+def test_a_byte_order_mark_is_no_error(cli, written, tmp_path: Path):
+    path = tmp_path / written("r.csv")
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert cli("replay", "r.csv", "--json").status == 0
 
 
 def test_a_folder(refusal, tmp_path: Path):

@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import pytest
@@ -98,6 +99,7 @@ FILES = {
     "[start]\nroll = 1": "unknown key of [start] 'roll'; did you mean roll_deg?",
     "[guard]\nlimit = 1": "unknown key of [guard] 'limit'; did you mean torque_limit?",
     "[[pushes]]\ntime = 1\nimpulse = 2\nwidth = 3": "unknown key of [pushes] 'width'; known: time",
+    "[[pushes]]\ntme = 1": "unknown key of [pushes] 'tme'; did you mean time?",
     "[[pushes]]\ntime = 1": "pushes.impulse: must be given",
     "[[pushes]]\ntime = 1\nimpulse = 2\nduration = 0": "pushes.duration = 0: must be at least",
     "[pushes]\ntime = 1\nimpulse = 2": "must be a list",
@@ -140,12 +142,61 @@ def test_a_scenario_file_that_cannot_be_is_named(refused, tmp_path: Path, text: 
 
 def test_a_binary_file_is_no_scenario(refused, tmp_path: Path):
     (tmp_path / "s.toml").write_bytes(bytes(range(256)))
-    assert "s.toml: is not text; a scenario is a TOML file" in refused("s.toml")
+    assert "s.toml: is not a text file (UTF-8)" in refused("s.toml")
+
+
+DEEP = "a = " + "[" * 5000
+
+
+def test_a_scenario_that_is_nested_too_deeply(refused, tmp_path: Path):
+    (tmp_path / "s.toml").write_text(DEEP)
+    assert "scenario s.toml: not TOML: nested too deeply" in refused("s.toml")
+
+
+def test_a_rig_that_is_nested_too_deeply(refused, tmp_path: Path):
+    (tmp_path / "rig.toml").write_text(DEEP)
+    assert "rig rig.toml: not TOML: nested too deeply" in refused("--rig", "rig.toml")
+
+
+def test_an_option_that_is_nested_too_deeply(refused):
+    assert "--set: [[[" in refused("--set", DEEP.replace(" ", ""))
+
+
+@pytest.mark.parametrize("scenario", ['rig = "bad.toml"', '[rig]\nname = "bad.toml"'])
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("inerta = 1", "rig bad.toml: unknown key of [rig] 'inerta'; did you mean inertia or"),
+        ("inertia = -1", "rig bad.toml: rig.inertia = -1: must be at least 0.0001 and at most"),
+    ],
+)
+def test_what_is_wrong_in_a_rig_file_is_told_of_it(
+    refused, tmp_path: Path, scenario: str, text: str, message: str
+):
+    (tmp_path / "s.toml").write_text(scenario)
+    (tmp_path / "bad.toml").write_text(text)
+    assert message in refused("s.toml")
+    assert message in refused("--rig", "bad.toml")
+
+
+def test_a_pipe_is_no_scenario(refused, tmp_path: Path):
+    os.mkfifo(tmp_path / "pipe")
+    assert "scenario pipe: is not a scenario file" in refused("pipe")
+
+
+@pytest.mark.parametrize("path", ["/dev/zero", "/dev/null"])
+def test_a_device_is_no_scenario(refused, path: str):
+    assert f"scenario {path}: is not a scenario file" in refused(path)
+
+
+def test_a_byte_order_mark_is_no_error(cli, tmp_path: Path):
+    (tmp_path / "s.toml").write_bytes(b"\xef\xbb\xbfspeed = 4\n")
+    assert cli("run", "s.toml", *SHORT).status == 0
 
 
 def test_a_folder_is_no_scenario(refused, tmp_path: Path):
     (tmp_path / "s.toml").mkdir()
-    assert "scenario s.toml: is a directory" in refused("s.toml")
+    assert "scenario s.toml: is a folder; give a scenario file in it" in refused("s.toml")
 
 
 def test_what_the_option_says_is_not_blamed_on_the_file(refused, tmp_path: Path):

@@ -3,6 +3,7 @@ from dataclasses import replace
 import h5py
 import pytest
 
+from bikesim.errors import InputError
 from bikesim.experiment.ride_again import ride_again
 from bikesim.record.reader import open_run
 
@@ -29,6 +30,25 @@ def test_another_bicycle_is_found_out(ridden):
     run = ridden(start={"roll_deg": 2})
     other = replace(run, bicycle=run.bicycle.with_gravity(9.7))
     assert ride_again(other).feedback_torque > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("scenario", "what"),
+    [
+        ("rig = ", "not TOML"),
+        ("a = 1", "'rig' is missing"),
+        ("rig = 3", ""),
+        ('[rig]\nsteer_stop_deg = "wide"', ""),
+        ("[rig]\nsteer_stop_deg = 60", "'guard' is missing"),
+        ("guard = 3\n[rig]\nsteer_stop_deg = 60", ""),
+        ("[rig]\nsteer_stop_deg = 60\n[guard]\ntorque_limit = -1", "guard.torque_limit = -1"),
+    ],
+)
+def test_a_scenario_that_is_damaged_is_told_with_its_record(ridden, scenario: str, what: str):
+    run = replace(ridden(), scenario=scenario)
+    with pytest.raises(InputError) as refused:
+        ride_again(run)
+    assert str(refused.value).startswith(f"{run.path}: its scenario is damaged: {what}")
 
 
 def test_a_torque_that_was_changed_is_found_out(ridden):

@@ -123,3 +123,13 @@ class TestRun:
         asked = iter([False, False, True])
         ending = run(build(Scenario()), tmp_path / "run.h5", interrupted=lambda: next(asked))
         assert ending.reason == "interrupted"
+
+
+class TestTheRig:
+    def test_is_closed_when_its_record_cannot_be_opened(self, tmp_path, monkeypatch):
+        parts = build(Scenario(duration=0.1))
+        closed = []
+        monkeypatch.setattr(parts.rig, "close", lambda: closed.append(True))
+        with pytest.raises(InputError, match="is a folder"):
+            run(parts, tmp_path)
+        assert closed

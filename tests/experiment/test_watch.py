@@ -5,7 +5,7 @@ import pytest
 
 from bikesim.experiment.watch import Watch
 
-SIGNALS = [signal.SIGINT, signal.SIGTERM]
+SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 
 @pytest.mark.parametrize("number", SIGNALS, ids=lambda s: s.name)
@@ -17,7 +17,8 @@ def test_a_signal_asks_for_the_end(number: int):
 
 
 @pytest.mark.parametrize("number", SIGNALS, ids=lambda s: s.name)
-def test_a_second_one_interrupts_at_once(number: int):
+def test_a_second_one_interrupts_at_once(monkeypatch: pytest.MonkeyPatch, number: int):
+    monkeypatch.setattr("bikesim.experiment.watch._ONE_SIGNAL", -1)  # no wrapper sends it twice
     with Watch(1000, 0.001).watching():
         os.kill(os.getpid(), number)
         with pytest.raises(KeyboardInterrupt):
@@ -30,6 +31,16 @@ def test_signals_are_given_back(number: int):
     with Watch(1000, 0.001).watching():
         assert signal.getsignal(number) != before
     assert signal.getsignal(number) == before
+
+
+def test_a_hangup_that_is_ignored_stays_so():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Watch(1000, 0.001).watching() as watch:
+            os.kill(os.getpid(), signal.SIGHUP)
+            assert watch() is False
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 def test_progress_on_the_way_and_none_left_of_it(capsys):

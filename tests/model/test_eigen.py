@@ -1,5 +1,7 @@
 import math
+from collections.abc import Callable
 from itertools import pairwise, permutations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,6 +31,13 @@ PUBLISHED = [
 # [M07, Sec. 4]: the speed where the two unstable real roots meet, and the root there.
 DOUBLE_ROOT_SPEED, DOUBLE_ROOT = 0.684283078892460, 3.78290405129320
 WEAVE_SPEED, CAPSIZE_SPEED = 4.29238253634111, 6.02426201538837
+SPEEDS = np.linspace(0, 10, 1001)
+
+Modal = Callable[[Bicycle, float], Modes]
+
+
+def paper_modes(bicycle: Bicycle, speed: float) -> Modes:
+    return simulator_modes(bicycle, Law.PAPER, speed)
 
 
 def quadratic_eigenvalues(bicycle: Bicycle, speed: float) -> np.ndarray:
@@ -136,15 +145,28 @@ class TestNames:
 
     @pytest.mark.parametrize("name", bicycles.names())
     def test_are_continuous_in_speed(self, name: str):
-        """The names carry over from speed to speed as the nearest pairing of the roots does."""
-        bicycle = bicycles.load(name)
-        modes = [np.array(bicycle_modes(bicycle, v).all()) for v in np.linspace(0, 10, 1001)]
-        for before, after in pairwise(modes):
-            distance = np.abs(before[:, None] - after[None, :])
-            nearest = distance[linear_sum_assignment(distance)].sum()
-            # The two of the weave may change places where they meet.
-            swapped = distance[[0, 1, 2, 3], [0, 1, 3, 2]].sum()
-            assert min(np.trace(distance), swapped) == pytest.approx(nearest, abs=1e-12)
+        _assert_continuous([bicycle_modes(bicycles.load(name), v) for v in SPEEDS])
+
+    @pytest.mark.parametrize("rig", [bicycle_modes, paper_modes])
+    def test_are_continuous_where_castering_and_capsize_meet(self, rig: Modal, shared: Path):
+        """The Browser without a rider: two stable roots become a pair beside two unstable ones."""
+        path = shared / "reference" / "bicycles" / "BrowserBenchmark.txt"
+        bicycle = bicycles.load(path)
+        found = [rig(bicycle, v) for v in SPEEDS]
+        _assert_continuous(found)
+        assert any(modes.castering.imag != 0 for modes in found)
+        assert all(modes.weave[0].real > 2 for modes in found[:100])
+
+
+def _assert_continuous(found: list[Modes]) -> None:
+    """The names carry over from speed to speed as the nearest pairing of the roots does."""
+    for before, after in pairwise([np.array(modes.all()) for modes in found]):
+        distance = np.abs(before[:, None] - after[None, :])
+        nearest = distance[linear_sum_assignment(distance)].sum()
+        # The two of one pair may change places where they meet.
+        orders = ([0, 1, 2, 3], [0, 1, 3, 2], [1, 0, 2, 3], [1, 0, 3, 2])
+        kept = min(distance[[0, 1, 2, 3], order].sum() for order in orders)
+        assert kept == pytest.approx(nearest, abs=1e-12)
 
 
 class TestStabilityLimits:

@@ -33,6 +33,24 @@ def test_refuses_what_must_be_positive(benchmark, name, value):
         replace(benchmark, **{name: value})
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        ("c", 1e150, "-100 to 100 m"),
+        ("w", 1e-300, "0.001 to 100 m"),
+        ("rF", 1e9, "0.001 to 100 m"),
+        ("zB", -1e3, "-100 to 100 m"),
+        ("mB", 1e-9, "0.001 to 100000 kg"),
+        ("IFyy", 1e-30, "1e-09 to 1e+06 kg m²"),
+        ("IBxz", -1e9, r"-1e\+06 to 1e\+06 kg m²"),
+    ],
+)
+def test_refuses_what_is_far_beyond_any_bicycle(benchmark, name, value, allowed):
+    allowed = allowed.replace("to 1e+", r"to 1e\+")
+    with pytest.raises(InputError, match=f"{name} = .*must be from {allowed}"):
+        replace(benchmark, **{name: value})
+
+
 def test_refuses_a_tilt_in_degrees(benchmark):
     with pytest.raises(InputError, match=r"lam = 18\.0.*radians"):
         replace(benchmark, lam=18.0)

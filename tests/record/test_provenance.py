@@ -48,6 +48,14 @@ def test_gathering_imports_nothing_heavy():
     assert done.stdout.strip() == "set()"
 
 
+def test_a_platform_that_cannot_be_found_out_is_unknown(monkeypatch: pytest.MonkeyPatch):
+    def fails() -> str:
+        raise OSError
+
+    monkeypatch.setattr("platform.platform", fails)
+    assert Provenance.gather().platform == "unknown"
+
+
 def test_the_commit_of_a_clean_tree(tree: Path):
     assert source_commit(tree) == git(tree, "rev-parse", "HEAD")
 

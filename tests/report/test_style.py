@@ -1,4 +1,7 @@
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -73,6 +76,21 @@ def test_the_same_figure_is_the_same_file(tmp_path: Path, kind: str):
 def test_no_file_says_when_it_was_made(tmp_path: Path, kind: str):
     data = save(drawn(), tmp_path / f"figure.{kind}").read_bytes()
     assert not re.search(rb"CreationDate|<dc:date>|tIME", data)
+
+
+def test_a_home_that_cannot_be_written_is_not_complained_of(tmp_path: Path):
+    (tmp_path / "home").touch()  # a file, in which not even root can make a folder
+    hidden = ("MPLCONFIGDIR", "XDG_CONFIG_HOME", "XDG_CACHE_HOME")
+    environment = {key: value for key, value in os.environ.items() if key not in hidden}
+    code = "import bikesim.report.eigenvalue_figure, matplotlib; matplotlib.get_cachedir()"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**environment, "HOME": str(tmp_path / "home")},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stderr == ""
 
 
 def test_folders_are_made(tmp_path: Path):

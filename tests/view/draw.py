@@ -63,27 +63,35 @@ def pictures(shots: list[Shot]) -> list[Drawn]:
     return [Drawn(*parts) for parts in pickle.loads(ran.stdout)]
 
 
-def _draw(shot: Shot, scenes: dict[Any, Any]) -> tuple[Any, ...]:
+def _made(shot: Shot, made: dict[Any, Any]) -> tuple[Any, Any]:
+    """The scene of a shot and its renderer, which take long to make."""
     import mujoco
 
     from bikesim import bicycles
     from bikesim.view.scene import road_scene
 
     path = None if shot.path is None else np.asarray(shot.path)
-    key = (shot.bicycle, shot.roll_cue, None if path is None else path.tobytes())
-    if key not in scenes:
-        scenes[key] = road_scene(bicycles.load(shot.bicycle), path=path, roll_cue=shot.roll_cue)
-    scene = scenes[key]
-    scene.model.vis.quality.offsamples = 0
-    width, height = shot.size
-    with mujoco.Renderer(scene.model, height, width) as renderer:
+    key = (shot.bicycle, shot.roll_cue, None if path is None else path.tobytes(), shot.size)
+    if key not in made:
+        scene = road_scene(bicycles.load(shot.bicycle), path=path, roll_cue=shot.roll_cue)
+        scene.model.vis.quality.offsamples = 0
+        width, height = shot.size
+        renderer = mujoco.Renderer(scene.model, height, width)
         renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
         scene.prepare(renderer.scene)
-        scene.show(shot.pose)
-        if shot.segments:
-            renderer.enable_segmentation_rendering()
-        renderer.update_scene(scene.data, scene.camera(shot.view), scene.option(shot.view))
-        pixels = renderer.render()
+        made[key] = scene, renderer
+    return made[key]
+
+
+def _draw(shot: Shot, made: dict[Any, Any]) -> tuple[Any, ...]:
+    scene, renderer = _made(shot, made)
+    scene.show(shot.pose)
+    if shot.segments:
+        renderer.enable_segmentation_rendering()
+    else:
+        renderer.disable_segmentation_rendering()
+    renderer.update_scene(scene.data, scene.camera(shot.view), scene.option(shot.view))
+    pixels = renderer.render()
     names = {k: scene.model.geom(k).name for k in range(scene.model.ngeom)}
     camera = scene.data.camera(scene.camera(shot.view))
     tangent = np.tan(0.5 * np.radians(scene.model.camera(shot.view).fovy[0]))
@@ -96,9 +104,11 @@ def _draw(shot: Shot, scenes: dict[Any, Any]) -> tuple[Any, ...]:
 
 
 def _main() -> None:
-    scenes: dict[Any, Any] = {}
+    made: dict[Any, Any] = {}
     shots = [Shot(Pose(*first), *rest) for first, *rest in pickle.load(sys.stdin.buffer)]
-    sys.stdout.buffer.write(pickle.dumps([_draw(shot, scenes) for shot in shots]))
+    sys.stdout.buffer.write(pickle.dumps([_draw(shot, made) for shot in shots]))
+    for _, renderer in made.values():
+        renderer.close()
 
 
 if __name__ == "__main__":

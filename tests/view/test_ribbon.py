@@ -21,7 +21,7 @@ def laid(path: np.ndarray, x: float, y: float) -> np.ndarray:
     ribbon.place(data, x, -y)
     pieces = [k for k in range(model.nbody) if model.body(k).name.startswith("ribbon")]
     places = data.mocap_pos[model.body_mocapid[pieces]]
-    return (places[places[:, 2] == 0] + [x, -y, 0])[:, :2] * [1, -1]
+    return (places[places[:, 2] > -1] + [x, -y, 0])[:, :2] * [1, -1]
 
 
 def circle(radius: float) -> np.ndarray:

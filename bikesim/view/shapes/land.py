@@ -10,7 +10,7 @@ import numpy as np
 
 from bikesim.view.shapes.colour import Colour
 from bikesim.view.shapes.mesh import Array, Mesh, box, joined, polygon
-from bikesim.view.shapes.plants import FAR, Detail, bush, crown, own, tree, trunk, tuft
+from bikesim.view.shapes.plants import FAR, Detail, bush, crown, tree, trunk, tuft
 
 WINDOW = 720.0  # m, after which the land repeats
 SQUARE = 80.0  # m, a side of a square of field
@@ -38,7 +38,7 @@ def stretch(variant: int, detail: Detail) -> Mesh:
 def field(variant: int, detail: Detail, *, road: bool) -> Mesh:
     """A square of land; where the `road` runs through it, its middle stays free."""
     chance = np.random.default_rng(200 + variant + 50 * road)
-    parts = [] if road else [_crops(own(chance), variant, detail)]
+    parts: list[Mesh] = []
     kinds = (_copse, _farm, _hedge, _lone_trees, _orchard, _lone_trees, _hedge, _copse, _hamlet)
     parts += kinds[variant % len(kinds)](chance, detail, road)
     if detail.near:
@@ -87,18 +87,6 @@ def house(chance: np.random.Generator, *, barn: bool = False) -> Mesh:
         parts.append(box([-0.05 * a, s * b, 1.05], [0.5, 0.05, 1.05], Colour.DOOR))
         parts.append(box([s * a, 0.0, 1.7], [0.04, 0.7, 0.65], Colour.WINDOW))
     return joined(parts)
-
-
-def _crops(chance: np.random.Generator, variant: int, detail: Detail) -> Mesh:
-    """A field in rows, just over the meadow: stripes, so that speed can be seen on it."""
-    colour = (Colour.WHEAT, Colour.MEADOW, Colour.PLOUGHED, Colour.BLOSSOM)[variant % 4]
-    half_x, half_y = chance.uniform(24, 37), chance.uniform(24, 37)
-    gap, width = (3.0, 1.9) if detail.near else (12.0, 7.6)
-    rows = []
-    for y in np.arange(-half_y, half_y - 0.5 * gap, gap):
-        corners = np.array([[-half_x, y], [half_x, y], [half_x, y + width], [-half_x, y + width]])
-        rows.append(polygon(np.insert(corners, 2, -0.006, axis=1), colour))
-    return joined(rows)
 
 
 def _place(chance: np.random.Generator, road: bool) -> list[float]:
