@@ -152,9 +152,9 @@ def test_symbols_that_cannot_be_printed_are_no_error(process, encoding: str, arg
     begun = process(
         *arguments, env={**os.environ, "PYTHONIOENCODING": encoding}, encoding="latin-1"
     )
-    out, err = begun.communicate(timeout=30)
+    _, err = begun.communicate(timeout=30)
     assert "Traceback" not in err
-    assert (out or err).count("?") > 0
+    assert begun.returncode == (2 if "run" in arguments else 0)
 
 
 def test_a_run_into_a_pipe_that_nobody_reads_has_its_record(process, tmp_path: Path):
