@@ -74,7 +74,7 @@ class HapticBicycle:
         self._haptics = 0.0 if law is Law.OFF else 1.0
         self._cos_over_w = math.cos(bicycle.steer_axis_tilt) / bicycle.wheelbase
         self._trail = bicycle.trail
-        self._cached = lru_cache(maxsize=4096)(self._coefficients)
+        self._cached = lru_cache(maxsize=4096, typed=True)(self._coefficients)
 
     def start(
         self,

@@ -77,4 +77,5 @@ def _product(P: tuple[float, ...], Q: tuple[float, ...]) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-_cached = lru_cache(maxsize=4096)(_transition)
+# By type too: what was worked out in NumPy scalars must not come back to a loop of floats.
+_cached = lru_cache(maxsize=4096, typed=True)(_transition)

@@ -52,3 +52,10 @@ def test_two_steps_are_one_of_double_length():
     phi = np.reshape(transition(0.01, -9.82, 0.3)[:4], (2, 2))
     twice = np.reshape(transition(0.02, -9.82, 0.3)[:4], (2, 2))
     assert phi @ phi == pytest.approx(twice, rel=1e-14)
+
+
+def test_numpy_scalars_do_not_come_back_to_floats():
+    """Equal keys of another type are other keys: a loop of floats must stay one."""
+    step, stiffness, damping = 0.001234, -9.8, 0.25
+    transition(np.float64(step), np.float64(stiffness), np.float64(damping))
+    assert {type(entry) for entry in transition(step, stiffness, damping)} == {float}
