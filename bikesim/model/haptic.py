@@ -34,7 +34,7 @@ class BicycleState(NamedTuple):
     next step interpolates from.
     """
 
-    time: float
+    time: Real
     steer: Real
     steer_rate: Real
     speed: Real
@@ -59,7 +59,7 @@ class HapticBicycle:
     """A bicycle under one law, as a function from state and measured steer to the next state.
 
     Pure: it keeps nothing of a ride. The same code takes floats (one rig) or arrays of equal
-    shape (a batch); the time is a float in both.
+    shape (a batch).
     """
 
     def __init__(self, bicycle: Bicycle, law: Law) -> None:
@@ -79,7 +79,7 @@ class HapticBicycle:
     def start(
         self,
         *,
-        time: float = 0.0,
+        time: Real = 0.0,
         steer: Real = 0.0,
         steer_rate: Real = 0.0,
         speed: Real = 0.0,
@@ -100,7 +100,7 @@ class HapticBicycle:
     def step(
         self,
         before: BicycleState,
-        time: float,
+        time: Real,
         steer: Real,
         steer_rate: Real,
         speed: Real,
@@ -117,32 +117,32 @@ class HapticBicycle:
         (
             t0, steer0, _, speed0, phi0, _, _, heading, x, y, distance, _, q0, e0, f0,
         ) = before  # fmt: skip
-        h = round(time - t0, 9)  # whole nanoseconds, so that equal periods are equal
+        h = time - t0
         try:
             coefficients = self._cached(h, speed)
         except TypeError:  # arrays are not hashable
             coefficients = self._coefficients(h, speed)
         (
-            C_pp, C_pd, K_pp, K_pd, C_dp, C_dd, K_dp, K_dd,
+            C_pp, C_pd, K_pp, K_pd, M_dp, C_dp, C_dd, K_dp, K_dd, m, M_pp, cos_over_w, trail,
             P11, P12, P21, P22, A11, A12, A21, A22, B11, B12, B21, B22,
         ) = coefficients  # fmt: skip
 
         # Roll: z = (φ, q) with ż = A z + (e, f), e and f linear over the step.
-        e1 = -self._m * steer_rate
-        f1 = roll_moment / self._M_pp - C_pd * steer_rate - K_pd * steer - C_pp * e1
+        e1 = -m * steer_rate
+        f1 = roll_moment / M_pp - C_pd * steer_rate - K_pd * steer - C_pp * e1
         phi = P11 * phi0 + P12 * q0 + A11 * e0 + A12 * f0 + B11 * e1 + B12 * f1
         q = P21 * phi0 + P22 * q0 + A21 * e0 + A22 * f0 + B21 * e1 + B22 * f1
 
         phi_dot = q + e1
         q_dot = f1 - C_pp * q - K_pp * phi
         torque = steer_moment - (
-            self._M_dp * q_dot + C_dp * phi_dot + C_dd * steer_rate + K_dp * phi + K_dd * steer
+            M_dp * q_dot + C_dp * phi_dot + C_dd * steer_rate + K_dp * phi + K_dd * steer
         )
 
         # Eq. 8; ∫v δ dt by the trapezium (exact for linear steer), ∫c δ̇ dt from the angles.
         travelled = 0.5 * h * (speed0 + speed)
-        turned = self._cos_over_w * (
-            0.5 * h * (speed0 * steer0 + speed * steer) + self._trail * (steer - steer0)
+        turned = cos_over_w * (
+            0.5 * h * (speed0 * steer0 + speed * steer) + trail * (steer - steer0)
         )
         along = heading + 0.5 * turned
         cos, sin = _cos_sin(along)
@@ -164,7 +164,8 @@ class HapticBicycle:
         K_pp = (g * K0_pp + v * v * K2_pp) / M_pp
         return (
             C_pp, v * C_pd / M_pp, K_pp, (g * K0_pd + v * v * K2_pd) / M_pp,
-            v * C_dp, v * C_dd, g * K0_dp + v * v * K2_dp, g * K0_dd + v * v * K2_dd,
+            self._M_dp, v * C_dp, v * C_dd, g * K0_dp + v * v * K2_dp, g * K0_dd + v * v * K2_dd,
+            self._m, M_pp, self._cos_over_w, self._trail,
             *transition(h, K_pp, C_pp),
         )  # fmt: skip
 

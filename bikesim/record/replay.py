@@ -86,7 +86,10 @@ def _one_step_errors(r: Recording, haptic: HapticBicycle, until: int) -> tuple[f
     now, then = slice(0, until - 1), slice(1, until)
     # A rig that holds the new sample has, in effect, had it from the beginning of the step.
     begin = then if r.held else now
+    # Ours integrates over the times that it measured, that rig over its nominal period.
+    began, ended = (0.0, _period(r)) if r.held else (r.time[now], r.time[then])
     before = haptic.start(
+        time=began,
         steer=r.steer[begin],
         steer_rate=r.steer_rate[begin],
         speed=r.speed[begin],
@@ -96,7 +99,7 @@ def _one_step_errors(r: Recording, haptic: HapticBicycle, until: int) -> tuple[f
         steer_moment=r.steer_moment[begin],
     )
     after = haptic.step(
-        before, _period(r), r.steer[then], r.steer_rate[then], r.speed[then],
+        before, ended, r.steer[then], r.steer_rate[then], r.speed[then],
         r.roll_moment[then], r.steer_moment[then],
     )  # fmt: skip
     return (

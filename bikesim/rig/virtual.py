@@ -105,12 +105,14 @@ class VirtualRig:
         assert seen is not None, "a rig shows the bicycle before it waits"
         model, data, control, torque_of = self.model, self.data, self._control, self._rider.torque
         position, velocity = self._position.item, self._velocity.item
-        torque = 0.0
-        for _ in range(self._substeps):
+        # Begun and ended in the middle of a MuJoCo step, so that at the tick the sensors are those
+        # of the state that was reached, not of the one before it.
+        control[1] = torque = torque_of(position(0), velocity(0), seen)
+        mujoco.mj_step2(model, data)
+        for _ in range(self._substeps - 1):
             control[1] = torque = torque_of(position(0), velocity(0), seen)
-            # In this order the sensors are those of the new state, not of the one before it.
-            mujoco.mj_step2(model, data)
-            mujoco.mj_step1(model, data)
+            mujoco.mj_step(model, data)
+        mujoco.mj_step1(model, data)
         self._rider_torque = torque
         self._clock.advance()
 
