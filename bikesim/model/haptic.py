@@ -12,16 +12,14 @@ T_φ and T_δ are disturbances on the bicycle (a gust, a push), zero otherwise.
 
 import math
 from functools import lru_cache
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.law import Law
+from bikesim.model.real import Real
 from bikesim.model.transition import transition
-
-# A float for one rig; for a batch, an array with a value for each.
-Real: TypeAlias = Any
 
 
 class BicycleState(NamedTuple):
@@ -75,6 +73,8 @@ class HapticBicycle:
         self._cos_over_w = math.cos(bicycle.steer_axis_tilt) / bicycle.wheelbase
         self._trail = bicycle.trail
         self._cached = lru_cache(maxsize=4096, typed=True)(self._coefficients)
+        self._speeds: Real = None
+        self._of_step: dict[float, _Coefficients] = {}
 
     def start(
         self,
@@ -121,7 +121,7 @@ class HapticBicycle:
         try:
             coefficients = self._cached(h, speed)
         except TypeError:  # arrays are not hashable
-            coefficients = self._coefficients(h, speed)
+            coefficients = self._cached_for_array(h, speed)
         (
             C_pp, C_pd, K_pp, K_pd, M_dp, C_dp, C_dd, K_dp, K_dd, m, M_pp, cos_over_w, trail,
             P11, P12, P21, P22, A11, A12, A21, A22, B11, B12, B21, B22,
@@ -153,6 +153,16 @@ class HapticBicycle:
                 distance + travelled, self._haptics * torque, q, e1, f1,
             )
         )  # fmt: skip
+
+    def _cached_for_array(self, h: Real, speed: Real) -> _Coefficients:
+        """As long as a batch's speeds are the same object and time is one for all."""
+        if not isinstance(h, float):
+            return self._coefficients(h, speed)
+        if speed is not self._speeds:
+            self._speeds, self._of_step = speed, {}
+        if h not in self._of_step:
+            self._of_step[h] = self._coefficients(h, speed)
+        return self._of_step[h]
 
     def _coefficients(self, h: float, v: Real) -> _Coefficients:
         """Eq. 4's coefficients over M_φφ, eq. 6's, and the transition over h [s] at v [m/s]."""
