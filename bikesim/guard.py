@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar, NamedTuple
 
 from pydantic import Field
 
+from bikesim.model.real import Real
 from bikesim.settings import Settings
 
 CLAMPED, SLEWED, REFUSED = 1, 2, 4
@@ -38,10 +39,13 @@ class Stop(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """The torque [N m] that may go out, how it was limited (a bit mask), and whether to stop."""
+    """The torque [N m] that may go out, how it was limited (a bit mask), and whether to stop.
 
-    torque: float
-    limited: int
+    Of a batch: arrays, and a stop where all have stopped.
+    """
+
+    torque: Real
+    limited: Real
     stop: Stop | None
 
 
@@ -62,12 +66,10 @@ class Guard:
 
     def check(self, steer: float, roll: float, torque: float) -> Verdict:
         """For the measured steer angle [rad], the roll [rad] and T_f of eq. 6 [N m]."""
-        if not math.isfinite(torque):
-            return self._refuse(self._fault("feedback torque", torque))
-        if not -self._fall <= roll <= self._fall:
-            return self._refuse(self._fallen(roll))
-        if not -self._stop <= steer <= self._stop:
-            return self._refuse(self._at_stop(steer))
+        stop = self.reason_to_stop(steer, roll, torque)
+        if stop is not None:
+            self._last = 0.0
+            return Verdict(0.0, REFUSED, stop)
         limited = 0
         if torque > self._limit:
             torque, limited = self._limit, CLAMPED
@@ -81,23 +83,36 @@ class Guard:
         self._last = torque
         return Verdict(torque, limited, None)
 
-    def _refuse(self, stop: Stop) -> Verdict:
-        self._last = 0.0
-        return Verdict(0.0, REFUSED, stop)
+    @property
+    def limits(self) -> tuple[float, float, float, float]:
+        """Torque [N m], its change in a tick [N m], roll [rad], steer [rad]."""
+        return self._limit, self._step, self._fall, self._stop
 
-    def _fault(self, what: str, value: float) -> Stop:
-        return Stop(f"fault: {what} is {value}", fell=False, fault=True)
+    def reason_to_stop(self, steer: float, roll: float, torque: float) -> Stop | None:
+        """A torque that is not finite, a fall, the bar at its stop; in this order."""
+        if not math.isfinite(torque):
+            return _fault("feedback torque", torque)
+        if not -self._fall <= roll <= self._fall:
+            return self._fallen(roll)
+        if not -self._stop <= steer <= self._stop:
+            return _at_stop(steer)
+        return None
 
     def _fallen(self, roll: float) -> Stop:
         if not math.isfinite(roll):
-            return self._fault("roll", roll)
+            return _fault("roll", roll)
         side = "right" if roll > 0 else "left"
         return Stop(
             f"fell to the {side}: roll beyond {math.degrees(self._fall):.0f} deg", fell=True
         )
 
-    def _at_stop(self, steer: float) -> Stop:
-        if not math.isfinite(steer):
-            return self._fault("steer", steer)
-        side = "right" if steer > 0 else "left"
-        return Stop(f"fell: the bar hit its {side} stop", fell=True)
+
+def _fault(what: str, value: float) -> Stop:
+    return Stop(f"fault: {what} is {value}", fell=False, fault=True)
+
+
+def _at_stop(steer: float) -> Stop:
+    if not math.isfinite(steer):
+        return _fault("steer", steer)
+    side = "right" if steer > 0 else "left"
+    return Stop(f"fell: the bar hit its {side} stop", fell=True)

@@ -1,11 +1,15 @@
-"""The tick: read the bar, move the bicycle, check the torque, send it, show, record, wait."""
+"""The tick: read the bar, move the bicycle, check the torque, send it, show, record, wait.
+
+The same for one rig, in floats, and for a batch of them, in arrays with a value for each.
+"""
 
 from collections.abc import Callable
 from time import perf_counter
 from typing import NamedTuple, Protocol
 
-from bikesim.guard import Guard
+from bikesim.guard import Verdict
 from bikesim.model.haptic import BicycleState, HapticBicycle
+from bikesim.model.real import Real
 from bikesim.record.header import Ending
 from bikesim.rig.base import Rig, RigFinished
 
@@ -13,15 +17,15 @@ from bikesim.rig.base import Rig, RigFinished
 class Moments(NamedTuple):
     """A disturbance on the bicycle: T_φ and T_δ [N m]."""
 
-    roll: float = 0.0
-    steer: float = 0.0
+    roll: Real = 0.0
+    steer: Real = 0.0
 
 
 class Course(Protocol):
     """What happens to the bicycle from outside, as functions of time [s]."""
 
-    def speed(self, time: float) -> float:
-        """Forward speed [m/s]."""
+    def speed(self, time: float) -> Real:
+        """Forward speed [m/s]; the same array each time for as long as a batch's do not change."""
         ...
 
     def disturbance(self, time: float) -> Moments:
@@ -29,29 +33,51 @@ class Course(Protocol):
         ...
 
 
+class Haptics(Protocol):
+    """What an experiment makes of the feedback torque before it is checked: less, later, none."""
+
+    def __call__(self, time: float, torque: Real) -> Real:
+        """The torque [N m] to be checked and sent, of that which the law gives at a time [s]."""
+        ...
+
+
+class Checks(Protocol):
+    """What lets a torque out, or stops: a guard."""
+
+    def check(self, steer: Real, roll: Real, torque: Real) -> Verdict:
+        """For the measured steer angle [rad], the roll [rad] and the torque wanted [N m]."""
+        ...
+
+
 class Recorder(Protocol):
     """Takes one row a tick: TICK_CHANNELS, the rig's own, TIMING_CHANNELS."""
 
-    def append(self, row: tuple[float, ...]) -> None: ...
+    def append(self, row: tuple[Real, ...]) -> None: ...
 
 
 class Start(NamedTuple):
     """The bicycle at the first tick: roll [rad], roll rate [rad/s], heading [rad]."""
 
-    roll: float = 0.0
-    roll_rate: float = 0.0
-    heading: float = 0.0
+    roll: Real = 0.0
+    roll_rate: Real = 0.0
+    heading: Real = 0.0
+
+
+def as_the_law_gives(time: float, torque: Real) -> Real:
+    """Haptics without a change."""
+    return torque
 
 
 def ride(
     rig: Rig,
     haptic: HapticBicycle,
-    guard: Guard,
+    guard: Checks,
     record: Recorder,
     *,
     course: Course,
     start: Start,
     ticks: int,
+    haptics: Haptics = as_the_law_gives,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Ending:
     """Ticks until `ticks` are done, the guard stops, the rig has no more, or `interrupted`.
@@ -74,7 +100,8 @@ def ride(
                 state = haptic.step(
                     state, time, steer, steer_rate, speed, roll_moment, steer_moment
                 )
-            allowed, limited, stop = guard.check(steer, state.roll, state.feedback_torque)
+            wanted = haptics(time, state.feedback_torque)
+            allowed, limited, stop = guard.check(steer, state.roll, wanted)
             sent = rig.command(allowed)
             rig.show(state)
             tick_done = perf_counter()
@@ -100,8 +127,8 @@ def ride(
 def _first(
     haptic: HapticBicycle,
     start: Start,
-    sample: tuple[float, float, float],
-    speed: float,
+    sample: tuple[float, Real, Real],
+    speed: Real,
     moments: Moments,
 ) -> BicycleState:
     time, steer, steer_rate = sample

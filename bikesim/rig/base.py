@@ -4,15 +4,19 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from bikesim.model.haptic import BicycleState
+from bikesim.model.real import Real
 from bikesim.record.channels import Channel
 
 
 class Sample(NamedTuple):
-    """What the sensors said: time [s], steer angle [rad] and rate [rad/s]; right is positive."""
+    """What the sensors said: time [s], steer angle [rad] and rate [rad/s]; right is positive.
+
+    Of a batch: one time, and arrays.
+    """
 
     time: float
-    steer: float
-    steer_rate: float
+    steer: Real
+    steer_rate: Real
 
 
 class RigFinished(Exception):
@@ -47,7 +51,7 @@ class Rig(Protocol):
         """The newest sample. Raises RigFinished when there will be none."""
         ...
 
-    def command(self, torque: float) -> float:
+    def command(self, torque: Real) -> Real:
         """Ask the motor for a feedback torque [N m]; gives what was really sent."""
         ...
 
@@ -55,7 +59,7 @@ class Rig(Protocol):
         """Show the rider the bicycle: a display, or a model's eyes."""
         ...
 
-    def telemetry(self) -> tuple[float, ...]:
+    def telemetry(self) -> tuple[Real, ...]:
         """What only this rig knows, one value for each of `info.channels`."""
         ...
 

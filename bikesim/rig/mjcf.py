@@ -1,6 +1,7 @@
 """The MuJoCo model of a rig: mjcf/rig.xml with the figures of its settings."""
 
 import math
+from functools import lru_cache
 
 import mujoco
 
@@ -19,13 +20,21 @@ def rig_spec() -> mujoco.MjSpec:
         raise InputError(f"{path}: {' '.join(str(error).split())}") from None
 
 
+@lru_cache(maxsize=512)
 def rig_model(
-    settings: RigSettings, *, inertia: float, arms: Arms, steer_axis_tilt: float, step: float
+    settings: RigSettings,
+    *,
+    inertia: float,
+    arms: Arms,
+    steer_axis_tilt: float,
+    step: float,
+    drawn: bool = True,
 ) -> mujoco.MjModel:
-    """The compiled model of a rig.
+    """The compiled model of a rig. It is kept for who asks again: not to be changed.
 
     `inertia` I_δ [kg m²] is the total about the steer axis without the arms, motor rotor included;
     `arms` come on top of it. `steer_axis_tilt` [rad] of the bicycle, `step` [s] of the physics.
+    Not `drawn`, it has the mechanism alone: the same motion, bit for bit, in less time.
     """
     if settings.rotor_inertia >= inertia:
         raise InputError(
@@ -34,6 +43,8 @@ def rig_model(
         )
     _check_step(step, arms.stiffness, inertia + arms.inertia)
     spec = rig_spec()
+    if not drawn:
+        _undress(spec)
     spec.option.timestep = step
     # A state that is not finite must reach the guard, not begin again at rest as if nothing was.
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
@@ -56,6 +67,11 @@ def rig_model(
         return spec.compile()
     except ValueError as error:
         raise InputError(f"rig: MuJoCo refuses the model: {' '.join(str(error).split())}") from None
+
+
+def _undress(spec: mujoco.MjSpec) -> None:
+    for part in (*spec.geoms, *spec.cameras, *spec.lights, spec.body("display")):
+        spec.delete(part)
 
 
 def _check_step(step: float, stiffness: float, inertia: float) -> None:

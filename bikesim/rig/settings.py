@@ -89,6 +89,9 @@ class RigSettings(Settings):
     motor_lag: _Delay = Field(default=0.0, description="Time constant from command to torque [s].")
     motor_delay: _Delay = Field(default=0.0, description="Dead time from command to torque [s].")
 
+    def __hash__(self) -> int:
+        return hash(tuple(self.__dict__.values()))
+
     @property
     def steer_stop(self) -> float:
         """Mechanical stop, each side [rad]."""

@@ -1,5 +1,7 @@
 """The virtual rig: the handlebar of mjcf/rig.xml in MuJoCo, with a rider model's hands on it."""
 
+from functools import partial
+
 import mujoco
 import numpy as np
 
@@ -46,18 +48,21 @@ class VirtualRig:
         period: float,
         step: float,
         random: np.random.Generator,
+        steer: float = 0.0,
     ) -> None:
-        """`inertia` I_δ [kg m²] without arms; `period` [s] a whole number of physics `step` [s]."""
-        self._substeps = round(period / step)
-        if self._substeps < 1 or abs(self._substeps * step - period) > 1e-9:
-            raise InputError(
-                f"physics_step = {step} s: the loop period, {period} s, must be a multiple of it"
-            )
+        """`inertia` I_δ [kg m²] without arms; `period` [s] a whole number of physics `step` [s].
+
+        The bar rests at `steer` [rad] at first.
+        """
+        self._substeps = whole_steps(period, step)
         self.info = RigInfo(name, period, inertia, settings.steer_stop, VIRTUAL_CHANNELS)
-        self.model = rig_model(
-            settings, inertia=inertia, arms=rider.arms, steer_axis_tilt=steer_axis_tilt, step=step
+        self._model_with = partial(
+            rig_model, settings, inertia=inertia, steer_axis_tilt=steer_axis_tilt, step=step
         )
+        self._arms = rider.arms
+        self.model = self._model_with(arms=self._arms)
         self.data = mujoco.MjData(self.model)
+        self.data.qpos[0] = steer
         self._rider = rider
         self._clock = SimulatedClock(period)
         self._angle = Sensor.angle(settings, period, random)
@@ -74,7 +79,7 @@ class VirtualRig:
 
     def read(self) -> Sample:
         """What the sensors say now."""
-        angle, _, _, rate = self._measured.tolist()
+        angle, rate = self._measured.tolist()
         return Sample(self._clock.now, self._angle(angle), self._rate(rate))
 
     def command(self, torque: float) -> float:
@@ -89,6 +94,11 @@ class VirtualRig:
     def show(self, bicycle: BicycleState) -> None:
         """To the rider's eyes."""
         self._seen = bicycle
+        if self._rider.arms is not self._arms:
+            self._arms = self._rider.arms
+            self.model = self._model_with(arms=self._arms)
+            # The step that is half done began with the other arms.
+            mujoco.mj_step1(self.model, self.data)
 
     def telemetry(self) -> tuple[float, ...]:
         """VIRTUAL_CHANNELS; the torques are those of the last physics step."""
@@ -119,3 +129,13 @@ class VirtualRig:
     def close(self) -> None:
         """Zero torque."""
         self._control[0] = 0.0
+
+
+def whole_steps(period: float, step: float) -> int:
+    """The physics steps in a loop period [s]. Raises InputError where they are not whole."""
+    steps = round(period / step)
+    if steps < 1 or abs(steps * step - period) > 1e-9:
+        raise InputError(
+            f"physics_step = {step} s: the loop period, {period} s, must be a multiple of it"
+        )
+    return steps

@@ -9,7 +9,6 @@ from bikesim import bicycles
 from bikesim.model.haptic import BicycleState, HapticBicycle
 from bikesim.model.law import Law
 from bikesim.rider.base import Arms, Rider
-from bikesim.rider.hands_off import HandsOff
 from bikesim.rig.settings import RigSettings
 from bikesim.rig.virtual import VirtualRig
 
@@ -23,11 +22,14 @@ def upright() -> BicycleState:
     return HapticBicycle(bicycles.load("benchmark"), Law.PAPER).start()
 
 
-class OnlyArms(HandsOff):
+class OnlyArms:
     """Arms that lie on the bar and do nothing."""
 
     def __init__(self, arms: Arms) -> None:
         self.arms = arms
+
+    def torque(self, steer: float, steer_rate: float, seen: BicycleState) -> float:
+        return 0.0
 
 
 class Pull:

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfilt
 
-from bikesim.errors import InputError
-from bikesim.rig.filters import LowPass
 from bikesim.rig.virtual import VirtualRig
 
 from .conftest import MakeRig, true_rate, true_steer, turn, wait
@@ -108,30 +106,6 @@ def test_a_conversion_has_one_noise_while_it_is_held(make_rig: MakeRig):
 
 
 class TestFilter:
-    def test_is_scipys_butterworth(self):
-        signal = np.random.default_rng(1).normal(size=500)
-        low_pass = LowPass(60.0, 2, 1e-3)
-        low_pass(0.0)
-        theirs = sosfilt(butter(2, 60.0 / (2 * math.pi), fs=1000.0, output="sos"), signal)
-        assert [low_pass(value) for value in signal] == pytest.approx(theirs, abs=1e-12)
-
-    @pytest.mark.parametrize("order", [1, 2, 3, 4])
-    def test_lets_half_the_power_through_at_its_cutoff(self, order: int):
-        low_pass = LowPass(60.0, order, 1e-3)
-        times = 1e-3 * np.arange(20_000)
-        out = np.array([low_pass(value) for value in np.sin(60.0 * times)])[10_000:]
-        assert out.std() / math.sqrt(0.5) == pytest.approx(math.sqrt(0.5), rel=2e-3)
-
-    @pytest.mark.parametrize("order", [1, 2, 3, 4])
-    def test_starts_at_rest_at_the_first_value(self, order: int):
-        low_pass = LowPass(60.0, order, 1e-3)
-        assert [low_pass(0.3) for _ in range(50)] == pytest.approx([0.3] * 50)
-
-    @pytest.mark.parametrize("cutoff", [3141.6, 1e6])
-    def test_above_half_the_sampling_frequency_is_refused(self, cutoff: float):
-        with pytest.raises(InputError, match=r"filter_cutoff = .* half the sampling frequency"):
-            LowPass(cutoff, 2, 1e-3)
-
     def test_treats_angle_and_rate_alike(self, make_rig: MakeRig):
         """So the filtered rate is the rate of the filtered angle."""
         rig = make_rig(filter_cutoff=50.0)
