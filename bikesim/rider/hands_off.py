@@ -1,14 +1,17 @@
 """Nobody at the bar."""
 
-from bikesim.model.haptic import BicycleState
-from bikesim.rider.base import Arms
+import numpy as np
+
+from bikesim.model.real import Real
+from bikesim.rider.base import Setting, Sight
 
 
 class HandsOff:
-    """No torque, no arms: the bicycle by itself."""
+    """No torque: the bicycle by itself."""
 
-    arms = Arms()
+    def __init__(self, setting: Setting) -> None:
+        del setting
 
-    def torque(self, steer: float, steer_rate: float, seen: BicycleState) -> float:
+    def intend(self, steer: Real, steer_rate: Real, seen: Sight) -> Real:
         """Zero."""
-        return 0.0
+        return 0.0 if isinstance(steer, float) else np.zeros(np.shape(steer))

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bikesim.errors import InputError
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.law import Law
 from bikesim.model.simulator import simulator_matrices
 from bikesim.model.whipple import Matrix
 from bikesim.rider.base import Arms
-from bikesim.rider.schwab2013 import IDENTIFIED_RUNS, IdentifiedRun
-from bikesim.rider.settings import RiderSettings, identified_run
+from bikesim.rider.settings import RiderSettings
 
 # Order of the Padé approximation of the visual delay: roots with |s| < 8 rad/s of riders with up to
 # 0.56 s of it (the longest published) are within 1e-5 1/s of those of the exact delay.
@@ -34,22 +34,52 @@ class LinearRider(NamedTuple):
     arms: Arms
 
 
+class _Pathway(NamedTuple):
+    """What a sense contributes to the intended torque: gains on y, and on ∫δ dt, after a delay."""
+
+    gains: NDArray[np.float64]
+    steer_integral: float
+    delay: float
+
+
+_LINEAR = "human, pd, hands-off, schwab2013-RUN"
+
+
 def linear_rider(settings: RiderSettings) -> LinearRider:
-    """The linear part of a rider of these settings: hands-off, roll PD, or identified."""
-    if settings.name == "hands-off":
+    """The linear part of a rider who is a gain on each signal, and hands-off; as he begins.
+
+    Without noise, limit and changes of grip. Raises InputError for a rider of another kind, or
+    one without muscles.
+    """
+    s = settings
+    if s.name == "hands-off":
         return LinearRider(np.zeros((0, 0)), np.zeros((0, 4)), np.zeros(0), Arms())
-    muscle = _figure(settings.muscle_frequency), _figure(settings.muscle_damping_ratio)
-    arms = Arms(
-        _figure(settings.arm_inertia),
-        _figure(settings.arm_damping),
-        _figure(settings.arm_stiffness),
+    if s.roll_gain is None:
+        raise InputError(f"rider {s.name}: has no linear form here; those who have: {_LINEAR}")
+    if s.muscle_frequency is None:
+        raise InputError(f"rider {s.name}: has no linear form without rider.muscle_frequency")
+    muscle = s.muscle_frequency, _known(s.muscle_damping_ratio)
+    arms = Arms(_known(s.arm_inertia), _known(s.arm_damping), _known(s.arm_stiffness))
+    return _assembled(_pathways(s), *muscle, arms)
+
+
+def _pathways(s: RiderSettings) -> list[_Pathway]:
+    """By eyes, balance organs and hands; those that contribute."""
+    roll, roll_rate, share = (
+        _known(s.roll_gain),
+        _known(s.roll_rate_gain),
+        _known(s.vestibular_share),
     )
-    number = identified_run(settings.name)
-    if number is not None:
-        gains = next(run for run in IDENTIFIED_RUNS if run.run == number)
-        return _identified(gains, *muscle, arms)
-    gains = np.array([_figure(settings.roll_gain), 0.0, _figure(settings.roll_rate_gain), 0.0])
-    return _roll_pd(gains, _figure(settings.visual_delay), *muscle, arms)
+    seen = np.array([roll, 0.0, (1 - share) * roll_rate, 0.0])
+    turned = np.array([0.0, 0.0, share * roll_rate, 0.0])
+    felt = np.array([0.0, 0.0, 0.0, s.steer_rate_gain or 0.0])
+    pathways = [_Pathway(seen, 0.0, _known(s.visual_delay))]
+    if share:
+        pathways.append(_Pathway(turned, 0.0, _known(s.vestibular_delay)))
+    if s.steer_rate_gain is not None:
+        steer_integral = s.steer_integral_gain or 0.0
+        pathways.append(_Pathway(felt, steer_integral, _known(s.proprioceptive_delay)))
+    return pathways
 
 
 def closed_loop(
@@ -113,29 +143,29 @@ def _open_loop(
     return m.M, m.damping(speed), m.stiffness(speed, bicycle.gravity)
 
 
-def _roll_pd(
-    gains: NDArray[np.float64], delay: float, frequency: float, ratio: float, arms: Arms
-) -> LinearRider:
-    """States: those of the delay line, then T_δ and its rate."""
-    muscle = _muscle(frequency, ratio)
-    if delay == 0:
-        return LinearRider(muscle, _driven(frequency, gains), np.array([1.0, 0.0]), arms)
-    line, entry = delay_state_space(delay)
-    order = len(line)
-    seen = np.ones(order)
-    A = np.block([[line, np.zeros((order, 2))], [_driven(frequency, seen), muscle]])
-    B = np.vstack([entry @ gains[None, :], np.zeros((2, 4))])
-    return LinearRider(A, B, np.array([*np.zeros(order), 1.0, 0.0]), arms)
-
-
-def _identified(gains: IdentifiedRun, frequency: float, ratio: float, arms: Arms) -> LinearRider:
-    """States: ∫δ dt, then T_δ and its rate."""
-    felt = np.array([gains.roll, 0.0, gains.roll_rate, gains.steer_rate])
-    A = np.zeros((3, 3))
-    A[1:, :1] = _driven(frequency, np.array([gains.steer_integral]))
-    A[1:, 1:] = _muscle(frequency, ratio)
-    B = np.vstack([[0.0, 1.0, 0.0, 0.0], _driven(frequency, felt)])
-    return LinearRider(A, B, np.array([0.0, 1.0, 0.0]), arms)
+def _assembled(pathways: list[_Pathway], frequency: float, ratio: float, arms: Arms) -> LinearRider:
+    """States: ∫δ dt where it has a gain, then each pathway's delay line, then T_δ and its rate."""
+    integral = any(one.steer_integral for one in pathways)
+    orders = [DELAY_ORDER if one.delay else 0 for one in pathways]
+    order = int(integral) + sum(orders) + 2
+    A, B = np.zeros((order, order)), np.zeros((order, 4))
+    if integral:
+        B[0, 1] = 1.0
+    A[-2:, -2:] = _muscle(frequency, ratio)
+    first = int(integral)
+    for pathway, lines in zip(pathways, orders, strict=True):
+        last = first + lines
+        entry = np.array([0.0, frequency**2])[:, None]
+        rows = slice(-2, None)
+        if lines:
+            A[first:last, first:last], entry_of_line = delay_state_space(pathway.delay)
+            A[-2:, first:last] = entry
+            entry, rows = entry_of_line, slice(first, last)
+        B[rows] += entry * pathway.gains
+        if pathway.steer_integral:
+            A[rows, :1] += entry * pathway.steer_integral
+        first = last
+    return LinearRider(A, B, np.array([*np.zeros(order - 2), 1.0, 0.0]), arms)
 
 
 def _muscle(frequency: float, ratio: float) -> Matrix:
@@ -143,11 +173,6 @@ def _muscle(frequency: float, ratio: float) -> Matrix:
     return np.array([[0.0, 1.0], [-(frequency**2), -2 * ratio * frequency]])
 
 
-def _driven(frequency: float, gains: NDArray[np.float64]) -> Matrix:
-    """How what is intended, gains · signals, enters the muscle's two states."""
-    return np.vstack([np.zeros_like(gains), frequency**2 * gains])
-
-
-def _figure(value: float | None) -> float:
+def _known(value: float | None) -> float:
     assert value is not None, "settings must be resolved"
     return value

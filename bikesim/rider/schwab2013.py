@@ -1,11 +1,9 @@
 """The riders identified by Schwab, de Lange, Happee & Moore 2013 from lateral perturbations."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
-from bikesim.model.haptic import BicycleState
-from bikesim.rider.base import Arms
-from bikesim.rider.muscle import Neuromuscular
+from bikesim.model.real import Real
+from bikesim.rider.base import Setting, Sight
 
 
 class IdentifiedRun(NamedTuple):
@@ -48,36 +46,34 @@ IDENTIFIED_RUNS = tuple(
 
 
 class IdentifiedRider:
-    """T_δ = G_nm(s) (k_φ φ + k_φ̇ φ̇ + k_∫ ∫δ dt + k_δ̇ δ̇) + remnant [S13], without delay.
+    """T = k_φ φ + k_φ̇ φ̇ + k_∫ ∫δ dt + k_δ̇ δ̇ [S13].
 
-    Gains of one identified run, for the Davis bicycle at that run's speed: on another bicycle
-    most of them are unstable. `step` is the physics step [s].
+    `roll_gain` [N m/rad], `roll_rate_gain` [N m s/rad], `steer_integral_gain` [N m/(rad s)],
+    `steer_rate_gain` [N m s/rad]. Gains of an identified run are for the Davis bicycle at that
+    run's speed: on another bicycle most of them are unstable.
     """
 
     def __init__(
         self,
-        gains: IdentifiedRun,
+        setting: Setting,
         *,
-        muscle: Neuromuscular,
-        noise: Iterator[float],
-        arms: Arms,
-        step: float,
+        roll_gain: Real = 0.0,
+        roll_rate_gain: Real = 0.0,
+        steer_integral_gain: Real = 0.0,
+        steer_rate_gain: Real = 0.0,
     ) -> None:
-        self.arms = arms
-        self._gains = gains.roll, gains.roll_rate, gains.steer_integral, gains.steer_rate
-        self._muscle = muscle
-        self._noise = noise
-        self._step = step
-        self._steer_integral = 0.0
+        self._gains = roll_gain, roll_rate_gain, steer_integral_gain, steer_rate_gain
+        self._step = setting.step
+        self._steer_integral: Real = 0.0
 
-    def torque(self, steer: float, steer_rate: float, seen: BicycleState) -> float:
-        """One physics step; see the class."""
+    def intend(self, steer: Real, steer_rate: Real, seen: Sight) -> Real:
+        """The intended torque [N m]; see the class."""
         k_phi, k_phi_dot, k_integral, k_delta_dot = self._gains
-        self._steer_integral += self._step * steer
-        intended = (
+        # A new object: what was added to must not change where it is kept.
+        self._steer_integral = self._steer_integral + self._step * steer
+        return (
             k_phi * seen.roll
             + k_phi_dot * seen.roll_rate
             + k_integral * self._steer_integral
             + k_delta_dot * steer_rate
         )
-        return self._muscle(intended) + next(self._noise)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bikesim import bicycles
+from bikesim.errors import InputError
 from bikesim.model.eigen import bicycle_modes, simulator_modes
 from bikesim.model.law import Law
 from bikesim.model.simulator import simulator_matrices
@@ -114,6 +115,33 @@ def test_an_identified_rider_has_his_transfer_function():
     muscle = w**2 / (s * s + np.sqrt(2) * w * s + w**2)
     gains = (run.roll, run.steer_integral / s, run.roll_rate, run.steer_rate)
     np.testing.assert_allclose(found, muscle * np.array(gains), rtol=1e-12)
+
+
+def test_each_sense_has_its_own_delay():
+    """y = (φ, δ, φ̇, δ̇) by eyes, balance organs and hands, against the transfer functions."""
+    settings = RiderSettings(
+        name="schwab2013-184", visual_delay=0.1, vestibular_delay=0.05, vestibular_share=0.25,
+        proprioceptive_delay=0.02,
+    )  # fmt: skip
+    rider, s = linear_rider(settings), 3.0j
+    found = rider.C @ np.linalg.solve(s * np.eye(len(rider.A)) - rider.A, rider.B)
+    run = next(run for run in IDENTIFIED_RUNS if run.run == 184)
+    w = 2 * np.pi * 2.17
+    muscle = w**2 / (s * s + np.sqrt(2) * w * s + w**2)
+    eyes, organs, hands = (cmath.exp(-s * delay) for delay in (0.1, 0.05, 0.02))
+    gains = (
+        run.roll * eyes,
+        run.steer_integral / s * hands,
+        run.roll_rate * (0.75 * eyes + 0.25 * organs),
+        run.steer_rate * hands,
+    )
+    np.testing.assert_allclose(found, muscle * np.array(gains), rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["hess2012", "lqr", "torque-step", "mine.py:Mine"])
+def test_a_rider_who_is_no_set_of_gains_has_no_linear_form_here(name: str):
+    with pytest.raises(InputError, match="has no linear form here; those who have: human, pd"):
+        linear_rider(RiderSettings(name=name))
 
 
 @pytest.mark.parametrize("law", list(Law))

@@ -1,4 +1,3 @@
-from itertools import repeat
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +6,7 @@ import pytest
 from bikesim import bicycles
 from bikesim.model.law import Law
 from bikesim.model.simulator import simulator_matrices
-from bikesim.rider.base import Arms
-from bikesim.rider.muscle import Neuromuscular
+from bikesim.rider.base import Sight
 from bikesim.rider.schwab2013 import IDENTIFIED_RUNS, IdentifiedRider, IdentifiedRun
 
 OMEGA, ZETA = 2 * np.pi * 2.17, 2**-0.5
@@ -19,32 +17,25 @@ def test_the_table_is_the_published_one(shared: Path):
     assert np.array(IDENTIFIED_RUNS).tolist() == table.tolist()
 
 
-def rider(gains: IdentifiedRun, step: float = 1e-3) -> IdentifiedRider:
-    return IdentifiedRider(
-        gains, muscle=Neuromuscular(1e6, 1.0, step), noise=repeat(0.0), arms=Arms(), step=step
-    )
+def sight(roll: float, roll_rate: float) -> Sight:
+    return Sight(1.0, 3.5, roll, roll_rate, 0.0, 0.0, 0.0, 0.0)
 
 
-def gains(**figures: float) -> IdentifiedRun:
-    nothing = IdentifiedRun(0, 3.0, 0, 0, 0, 0, 0)
-    return nothing._replace(**figures)
+def test_he_sees_roll_and_roll_rate(setting):
+    brain = IdentifiedRider(setting(), roll_gain=20.0, roll_rate_gain=30.0)
+    assert brain.intend(0.2, 1.0, sight(0.1, 0.01)) == pytest.approx(2.3, rel=1e-12)
 
 
-def test_he_sees_roll_and_roll_rate(seen):
-    torque = rider(gains(roll=20.0, roll_rate=30.0)).torque(0.2, 1.0, seen(0.1, 0.01))
-    assert torque == pytest.approx(2.3, rel=1e-9)
-
-
-def test_he_feels_the_steer_rate(seen):
-    torque = rider(gains(steer_rate=-3.0)).torque(0.2, 0.5, seen(0.1, 0.01))
-    assert torque == pytest.approx(-1.5, rel=1e-9)
+def test_he_feels_the_steer_rate(setting):
+    brain = IdentifiedRider(setting(), steer_rate_gain=-3.0)
+    assert brain.intend(0.2, 0.5, sight(0.1, 0.01)) == pytest.approx(-1.5, rel=1e-12)
 
 
 @pytest.mark.parametrize("step", [1e-4, 1e-3])
-def test_he_integrates_the_steer_in_time_not_in_steps(seen, step: float):
-    one, torque = rider(gains(steer_integral=60.0), step), 0.0
+def test_he_integrates_the_steer_in_time_not_in_steps(setting, step: float):
+    brain, torque = IdentifiedRider(setting(step=step), steer_integral_gain=60.0), 0.0
     for _ in range(round(0.5 / step)):
-        torque = one.torque(0.1, 0.0, seen(0.0, 0.0))
+        torque = brain.intend(0.1, 0.0, sight(0.0, 0.0))
     assert torque == pytest.approx(60 * 0.1 * 0.5, rel=1e-9)
 
 
