@@ -2,13 +2,13 @@
 
 import pickle
 
-import numpy as np
-
-from bikesim.view.drawing import INK, Picture
+from bikesim.view.canvas import Canvas, Pixels, make_canvas
+from bikesim.view.drawing import INK
 from bikesim.view.film import Film
 from bikesim.view.layout import Column
 from bikesim.view.overlay import Overlay, torque_scale
 from bikesim.view.picture import Painter
+from bikesim.view.pose import Pose
 from bikesim.view.reel import Reel
 from bikesim.view.scene import Scene, bench_scene, road_scene
 from bikesim.view.strip import Limits, Strip, limits
@@ -17,22 +17,22 @@ from bikesim.view.strip import Limits, Strip, limits
 class Composer:
     """Makes any frame of a film; needs OpenGL, and keeps it until closed."""
 
-    def __init__(self, film: Film) -> None:
-        self._film = film
+    def __init__(self, film: Film, pixels: str) -> None:
+        """`pixels`: the format of the frames, "rgb24" or "yuv420p"."""
         axes = limits(film.reels)
         scale = torque_scale(film.reels)
-        self._frame = np.empty((film.layout.height, film.layout.width, 3), np.uint8)
+        self._canvas = make_canvas(pixels, film.layout.width, film.layout.height)
         self._studio = _Studio(film)
         self._columns = [
             _ColumnComposer(film, reel, column, self._studio, axes, scale)
             for reel, column in zip(film.reels, film.layout.columns, strict=True)
         ]
 
-    def frame(self, number: int) -> Picture:
-        """A frame as RGB; only valid until the next."""
+    def frame(self, number: int) -> Pixels:
+        """A frame; only valid until the next."""
         for column in self._columns:
-            column.draw(self._frame, number)
-        return self._frame
+            column.draw(self._canvas, number)
+        return self._canvas.pixels
 
     def close(self) -> None:
         """Let OpenGL go."""
@@ -53,28 +53,32 @@ class _ColumnComposer:
             self._strip = Strip(reel.curves, axes, column.strip.width, column.strip.height, unit)
         self._overlay = None
         if film.overlay:
-            self._overlay = Overlay(reel, unit, lean=film.roll_cue, torque_scale=scale)
-        self._line = max(1, round(2 * unit))
+            self._overlay = Overlay(reel, column.area, unit, lean=reel.roll_cue, torque_scale=scale)
+        self._line = 2 * max(1, round(unit))
+        self._drawn: tuple[Pose, bool] | None = None
 
-    def draw(self, frame: Picture, number: int) -> None:
+    def draw(self, canvas: Canvas, number: int) -> None:
         moment = self._reel.moment(number)
+        time = self._reel.first + float(self._elapsed[number])
+        shown = (moment.pose, self._reel.ended(time))
+        if shown == self._drawn:  # a run that ended before another one stands still
+            return
+        self._drawn = shown
         for (view, box), painter in zip(self._column.pictures, self._painters, strict=True):
-            frame[box.part] = painter.paint(moment.pose, view)
+            canvas.put(box, painter.paint(moment.pose, view))
+        self._draw_borders(canvas)
         if self._overlay is not None:
-            time = self._reel.first + float(self._elapsed[number])
-            self._overlay.draw(frame[self._column.area.part], moment, time)
+            self._overlay.draw(canvas, moment, time)
         if self._strip is not None and self._column.strip is not None:
-            self._strip.draw(frame[self._column.strip.part], moment)
-        self._draw_borders(frame)
+            with canvas.drawing(self._column.strip) as part:
+                self._strip.draw(part, moment)
 
-    def _draw_borders(self, frame: Picture) -> None:
+    def _draw_borders(self, canvas: Canvas) -> None:
         for _, box in self._column.pictures:
             if box.x > 0:
-                frame[box.y : box.y + box.height, box.x - self._line // 2 : box.x + self._line] = (
-                    INK
-                )
+                canvas.fill(box._replace(width=self._line), INK)
             if box.y > 0:
-                frame[box.y : box.y + self._line, box.x : box.x + box.width] = INK
+                canvas.fill(box._replace(height=self._line), INK)
 
 
 class _Studio:
@@ -82,12 +86,13 @@ class _Studio:
 
     def __init__(self, film: Film) -> None:
         self._film = film
-        self._painters: dict[tuple[bytes, bool, int, int], Painter] = {}
+        self._painters: dict[tuple[bytes, int, int], Painter] = {}
 
     def painter(self, reel: Reel, view: str, width: int, height: int) -> Painter:
-        key = (pickle.dumps(reel.bicycle), view == "bench", width, height)
+        shown = (reel.bicycle, reel.path, reel.roll_cue, view == "bench")
+        key = (pickle.dumps(shown), width, height)
         if key not in self._painters:
-            scene = make_scene(reel, view, roll_cue=self._film.roll_cue)
+            scene = make_scene(reel, view)
             self._painters[key] = Painter(scene, width, height, self._film.quality)
         return self._painters[key]
 
@@ -96,8 +101,8 @@ class _Studio:
             painter.close()
 
 
-def make_scene(reel: Reel, view: str, *, roll_cue: bool) -> Scene:
+def make_scene(reel: Reel, view: str) -> Scene:
     """The scene that a view looks at."""
     if view == "bench":
         return bench_scene(reel.bicycle)
-    return road_scene(reel.bicycle, roll_cue=roll_cue)
+    return road_scene(reel.bicycle, path=reel.path, roll_cue=reel.roll_cue)

@@ -1,5 +1,6 @@
 """The processes that draw: each with its own OpenGL, their frames handed on in order."""
 
+import contextlib
 import os
 import pickle
 import subprocess
@@ -15,10 +16,16 @@ from bikesim.view.film import Film
 from bikesim.view.gl import Backend
 from bikesim.view.order import FRAME, Order
 
+try:
+    import fcntl
+except ImportError:  # on Windows
+    fcntl = None
+
 Pixels = NDArray[np.uint8]
 
 # Each takes some 350 MB, and software OpenGL has threads of its own for further cores.
 _MOST_WORKERS = 2
+_PIPE = 1 << 20  # bytes, the most that Linux allows any user
 
 
 def cores() -> int:
@@ -64,6 +71,7 @@ class Crew:
             start_new_session=True,
         )
         self._processes.append(process)
+        _widen(process.stdout)
         stdin = process.stdin
         assert stdin is not None
         with stdin:
@@ -105,6 +113,13 @@ class Crew:
 def _shape(film: Film, pixels: str) -> tuple[int, ...]:
     height, width = film.layout.height, film.layout.width
     return (height, width, 3) if pixels == "rgb24" else (height * 3 // 2, width)
+
+
+def _widen(pipe: IO[bytes] | None) -> None:
+    """Lets a pipe hold most of a frame, where the system can: fewer turns between the processes."""
+    if fcntl is not None and pipe is not None and hasattr(fcntl, "F_SETPIPE_SZ"):
+        with contextlib.suppress(OSError):
+            fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, _PIPE)
 
 
 def _fill(pipe: IO[bytes], pixels: Pixels) -> bool:

@@ -11,6 +11,7 @@ from bikesim.view.shapes import frame, front, rider, wheels
 from bikesim.view.shapes.mesh import Array, Mesh, add_mesh
 from bikesim.view.shapes.places import CRANK_LENGTH, PEDAL_SIDE, places
 
+CASTER = "caster"  # the end of the name of what is there for its shadow only
 _GEAR = 2.6  # turns of the rear wheel to one of the cranks
 _EYE_BEHIND_GRIPS, _EYE_OVER_GRIPS = 0.50, 0.50  # m, so that hands are in sight
 _KNEE_OUT = 0.12

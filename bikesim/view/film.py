@@ -19,4 +19,3 @@ class Film:
     elapsed: NDArray[np.float64]
     quality: Quality
     overlay: bool = True
-    roll_cue: bool = True

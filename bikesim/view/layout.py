@@ -1,5 +1,6 @@
 """Where the pictures and the strips of a video lie in its frames."""
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -20,6 +21,15 @@ class Box(NamedTuple):
     y: int
     width: int
     height: int
+
+    @classmethod
+    def about(cls, x: float, y: float, width: float, height: float, within: "Box") -> "Box":
+        """The smallest box with even edges about a rectangle, as far as it is `within` another."""
+        left, top = (2 * math.floor(max(0.0, at) / 2) for at in (x, y))
+        right, bottom = (2 * math.ceil(end / 2) for end in (x + width, y + height))
+        right, bottom = min(right, within.width), min(bottom, within.height)
+        width, height = max(0, right - left), max(0, bottom - top)
+        return cls(within.x + left, within.y + top, width, height)
 
     @property
     def part(self) -> tuple[slice, slice]:
@@ -50,24 +60,32 @@ class Layout:
         return min(self.height / 720, narrowest / 600)
 
 
-def make_layout(view: str | None, runs: int, width: int, height: int) -> Layout:
+def make_layout(
+    view: str | None, runs: int, width: int, height: int, *, strip: bool = True
+) -> Layout:
     """The layout of a view. None is both views of one run, and the second of several.
 
-    One run's two views stand side by side, those of several above each other. Raises InputError.
+    One run's two views stand side by side, those of several above each other; over a `strip` of
+    signals, unless it is not wanted. Raises InputError.
     """
     if width < _SMALLEST[0] or height < _SMALLEST[1]:
         raise InputError(f"--size {width}x{height}: at least {_SMALLEST[0]}x{_SMALLEST[1]} pixels")
     if not 1 <= runs <= MOST_RUNS:
         raise InputError(f"render: name from one to {MOST_RUNS} records, not {runs}")
     views = _views(view, runs)
-    strip = _strip_height(view, runs, width, height)
+    under = _strip_height(view, runs, width, height) if strip else 0
     columns = []
-    for i in range(runs):
-        left, right = i * width // runs, (i + 1) * width // runs
-        area = Box(left, 0, right - left, height - strip)
-        under = Box(left, height - strip, right - left, strip) if strip else None
-        columns.append(Column(_pictures(views, area, beside=runs == 1), area, under))
+    for left, right in pairwise(_edges(0, width, runs)):
+        area = Box(left, 0, right - left, height - under)
+        signals = Box(left, height - under, right - left, under) if under else None
+        columns.append(Column(_pictures(views, area, beside=runs == 1), area, signals))
     return Layout(width, height, tuple(columns))
+
+
+def _edges(start: int, length: int, parts: int) -> list[int]:
+    """Of a length cut into about equal parts; even between them, as 4:2:0 wants it."""
+    between = [start + 2 * (i * length // (2 * parts)) for i in range(parts)]
+    return [*between, start + length]
 
 
 def _views(view: str | None, runs: int) -> tuple[str, ...]:
@@ -90,9 +108,9 @@ def _strip_height(view: str | None, runs: int, width: int, height: int) -> int:
 def _pictures(views: tuple[str, ...], area: Box, *, beside: bool) -> tuple[tuple[str, Box], ...]:
     n = len(views)
     if beside:
-        edges = [area.x + i * area.width // n for i in range(n + 1)]
+        edges = _edges(area.x, area.width, n)
         boxes = [Box(a, area.y, b - a, area.height) for a, b in pairwise(edges)]
     else:
-        edges = [area.y + i * area.height // n for i in range(n + 1)]
+        edges = _edges(area.y, area.height, n)
         boxes = [Box(area.x, a, area.width, b - a) for a, b in pairwise(edges)]
     return tuple(zip(views, boxes, strict=True))

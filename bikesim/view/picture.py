@@ -1,6 +1,5 @@
 """A pose shown in a scene, as a picture."""
 
-import cv2
 import mujoco
 import numpy as np
 
@@ -12,27 +11,21 @@ from bikesim.view.scene import Scene
 
 
 class Painter:
-    """Draws a scene off screen in pictures of one size."""
+    """Draws a scene off screen for boxes of one size, in as many pixels as the quality asks."""
 
     def __init__(self, scene: Scene, width: int, height: int, quality: Quality) -> None:
         self._scene = scene
-        self._size = (width, height)
         self._drawn = drawn_size(width, height, quality)
         self._renderer = renderer(scene.model, *self._drawn, quality)
         scene.prepare(self._renderer.scene)
         self._buffer = np.empty((self._drawn[1], self._drawn[0], 3), np.uint8)
 
     def paint(self, pose: Pose, view: str) -> Picture:
-        """The picture of a pose from a view. Only valid until the next."""
+        """A pose from a view, in the pixels that are drawn. Only valid until the next."""
         self._scene.show(pose)
         camera, option = self._scene.camera(view), self._scene.option(view)
         self._renderer.update_scene(self._scene.data, camera, option)
-        picture = self._renderer.render(out=self._buffer)
-        if self._drawn == self._size:
-            return picture
-        smaller = self._drawn > self._size
-        how = cv2.INTER_AREA if smaller else cv2.INTER_LINEAR
-        return cv2.resize(picture, self._size, interpolation=how)  # pyright: ignore[reportReturnType]
+        return self._renderer.render(out=self._buffer)
 
     def close(self) -> None:
         """Let the OpenGL context go."""

@@ -1,6 +1,5 @@
 """What a video takes from a record: a pose and the torques of each frame, and the curves."""
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from bikesim.model.bicycle import Bicycle
 from bikesim.view.pose import Pose, PoseTrack, needed
+from bikesim.view.scenario import Shown
 from bikesim.view.timeline import Timeline
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ Values = NDArray[np.float64]
 # A curve has so many points for the time that a strip shows at once: two a pixel in HD.
 WINDOW_SECONDS = 30.0
 _POINTS_A_WINDOW = 2400
+_HOLD = 1.5  # s of video
 
 
 class Curves(NamedTuple):
@@ -49,8 +50,8 @@ class Moment(NamedTuple):
 class Reel:
     """A run as a video needs it. Times [s] are the record's.
 
-    `torque_limit` [N m] is None where the scenario has none; `end_text` says why the run ended
-    early, from `end_time` on, or is empty.
+    `torque_limit` [N m] is None where the scenario has none; `path` as in `road_scene`; `end_text`
+    says why the run ended early, from `end_time` on, or is empty.
     """
 
     bicycle: Bicycle
@@ -63,6 +64,8 @@ class Reel:
     first: float
     last: float
     torque_limit: float | None
+    path: Values | None
+    roll_cue: bool
     fell: bool
     end_text: str
     end_time: float
@@ -77,16 +80,27 @@ class Reel:
         return bool(self.end_text) and time >= self.end_time - 1e-9
 
 
-def timeline(tracks: Sequence[PoseTrack], fps: Fraction, speed: float) -> Timeline:
-    """Of the longest of the runs."""
-    longest = max(tracks, key=lambda track: track.last - track.first)
+def timeline(
+    runs: Sequence["Run"], tracks: Sequence[PoseTrack], fps: Fraction, speed: float
+) -> Timeline:
+    """Of the longest of the runs; why that ended early stands long enough to be read."""
+    run, longest = max(
+        zip(runs, tracks, strict=True), key=lambda both: both[1].last - both[1].first
+    )
     duration = longest.last - longest.first
     margin = duration / max(1, longest.ticks - 1) / 2
-    return Timeline(duration, fps, speed, margin)
+    return Timeline(duration, fps, speed, margin, _HOLD if _ending(run, longest)[0] else 0.0)
 
 
-def make_reel(run: "Run", track: PoseTrack, elapsed: Values) -> Reel:
-    """A run at so many times since its begin [s]; after its end it stays as it was there."""
+def make_reel(
+    run: "Run", track: PoseTrack, elapsed: Values, *, roll_cue: bool | None = None
+) -> Reel:
+    """A run at so many times since its begin [s]; after its end it stays as it was there.
+
+    `roll_cue`: whether the lean is to be seen; None: if the rider saw it. Raises InputError.
+    """
+    scenario = Shown(run)
+    furthest = float(track.at(track.last).distance)
     times = np.minimum(track.first + elapsed, track.last)
     feedback = needed(run, "sent_torque")[: track.ticks]
     rider = run.channel("rider_torque")[: track.ticks] if "rider_torque" in run.names else None
@@ -102,7 +116,9 @@ def make_reel(run: "Run", track: PoseTrack, elapsed: Values) -> Reel:
         curves=_curves(track, feedback, rider),
         first=track.first,
         last=track.last,
-        torque_limit=_torque_limit(run),
+        torque_limit=scenario.torque_limit,
+        path=scenario.path(furthest),
+        roll_cue=scenario.roll_cue if roll_cue is None else roll_cue,
         fell=run.ending is not None and run.ending.fell,
         end_text=end_text,
         end_time=end_time,
@@ -131,14 +147,3 @@ def _ending(run: "Run", track: PoseTrack) -> tuple[str, float]:
         time = track.last if run.ending.fall_time is None else run.ending.fall_time
         return f"fell at {time:.1f} s", min(time, track.last)
     return "", track.last
-
-
-def _torque_limit(run: "Run") -> float | None:
-    """The smaller of the guard's limit and the rig's; a record may come without a scenario."""
-    try:
-        scenario = tomllib.loads(run.scenario)
-    except tomllib.TOMLDecodeError:
-        return None
-    tables = [scenario.get(name) for name in ("guard", "rig")]
-    limits = [table.get("torque_limit") for table in tables if isinstance(table, dict)]
-    return min((float(limit) for limit in limits if isinstance(limit, int | float)), default=None)

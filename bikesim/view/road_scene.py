@@ -7,7 +7,7 @@ from bikesim.errors import unknown
 from bikesim.model.bicycle import Bicycle
 from bikesim.view.contact import wheel_geometry
 from bikesim.view.crops import Crops
-from bikesim.view.cyclist import Cyclist
+from bikesim.view.cyclist import CASTER, Cyclist
 from bikesim.view.ground import add_ground
 from bikesim.view.pose import Pose
 from bikesim.view.ribbon import Ribbon
@@ -25,7 +25,7 @@ class RoadScene:
     def __init__(self, bicycle: Bicycle, *, path: NDArray | None, roll_cue: bool) -> None:
         spec = world_spec()
         self._cyclist = Cyclist(spec, wheel_geometry(bicycle))
-        self._world = World(spec)
+        self._world = World(spec, None if path is None else path * [1, -1])
         self._crops = Crops(spec)
         self._ribbon = None if path is None else Ribbon(spec, path)
         add_ground(spec, ribbon=path is None)
@@ -38,6 +38,8 @@ class RoadScene:
             self._ribbon.bind(self.model)
         self._cyclist.bind(self.model)
         self._shade = self.model.geom("shade").id
+        names = [self.model.geom(k).name for k in range(self.model.ngeom)]
+        self._casters = [k for k, name in enumerate(names) if name.endswith(CASTER)]
         self.show(Pose(0, 0, 0, 0, 0, 0, 0, 0))
 
     def show(self, pose: Pose) -> None:
@@ -66,3 +68,4 @@ class RoadScene:
         # Where no shadow is cast, a soft one under the wheels holds the bicycle to the ground.
         cast = bool(drawn.flags[mujoco.mjtRndFlag.mjRND_SHADOW])
         self.model.geom_rgba[self._shade] = _HIDDEN if cast else _SHADE
+        self.model.geom_rgba[self._casters, 3] = cast

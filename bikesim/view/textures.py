@@ -19,7 +19,8 @@ _SUN = (-0.44, 0.36, 0.82)  # towards it: against the light's direction in mjcf/
 _ZENITH = (0.25, 0.49, 0.80)
 _CLOUD = (0.99, 0.98, 0.97)
 _FACE = 768  # pixels a side of a face of the sky
-_DOWN = 3  # the face that is never seen
+_UP, _DOWN = 2, 3  # the faces above and below; the one below is never seen
+_DIP = 4  # rows below the middle of a face, from where on there is only haze
 
 
 def paint(spec: mujoco.MjSpec) -> None:
@@ -58,9 +59,11 @@ def grass() -> NDArray[np.uint8]:
     size = 1024
     fine, tufts = noise(size, 0.35, 1, coarsest=40), noise(size, 1.3, 2, coarsest=5)
     dry = _smooth(0.2, 1.8, noise(size, 1.8, 3, coarsest=2))
-    light = 1 + 0.10 * fine + 0.085 * tufts
-    green, straw = np.array([0.43, 0.565, 0.265]), np.array([0.60, 0.62, 0.34])
-    return _bytes((green + 0.55 * dry[..., None] * (straw - green)) * light[..., None])
+    light, dry = 1 + 0.10 * fine + 0.085 * tufts, 0.55 * dry
+    colours = zip((0.43, 0.565, 0.265), (0.60, 0.62, 0.34), strict=True)
+    return np.stack(
+        [_bytes((green + dry * (straw - green)) * light) for green, straw in colours], 2
+    )
 
 
 @cache
@@ -88,10 +91,12 @@ def rows() -> NDArray[np.uint8]:
 @cache
 def sky() -> NDArray[np.uint8]:
     """The six faces one below the other, in OpenGL's order: +x -x +y -y +z -z of a y-up cube."""
-    below = np.empty((_FACE, _FACE, 3))
-    below[:] = _HAZE
-    faces = [below if k == _DOWN else sky_colour(_directions(k, _FACE)) for k in range(6)]
-    return np.concatenate([_bytes(face) for face in faces])
+    faces = np.empty((6, _FACE, _FACE, 3), np.uint8)
+    faces[:] = _bytes(np.array(_HAZE))
+    for face in range(6):
+        rows = {_UP: _FACE, _DOWN: 0}.get(face, _FACE // 2 + _DIP)
+        faces[face, :rows] = _bytes(sky_colour(_directions(face, rows)))
+    return faces.reshape(-1, _FACE, 3)
 
 
 @cache
@@ -114,17 +119,18 @@ def road_ahead() -> NDArray[np.uint8]:
     return _bytes(colour)
 
 
-def _directions(face: int, size: int) -> Array:
-    """Where the pixels of a face look in the world (x forward, y left, z up), (size, size, 3)."""
-    step = (2 * np.arange(size) + 1) / size - 1
-    s, t = step[None, :], step[:, None]
-    one = np.ones((size, size))
-    s, t = s * one, t * one
+def _directions(face: int, rows: int) -> Array:
+    """Where the pixels of a face's first rows look in the world: x forward, y left, z up."""
+    step = (2 * np.arange(_FACE) + 1) / _FACE - 1
+    s, t = step[None, :], step[:rows, None]
     x, y, z = (
-        (one, -t, -s), (-one, -t, s), (s, one, t), (s, -one, -t), (s, -t, one), (-s, -t, -one),
+        (1, -t, -s), (-1, -t, s), (s, 1, t), (s, -1, -t), (s, -t, 1), (-s, -t, -1),
     )[face]  # fmt: skip
-    looking = np.stack([x, -z, y], -1)  # y up there is z up here
-    return looking / np.linalg.norm(looking, axis=-1, keepdims=True)
+    looking = np.empty((rows, _FACE, 3))
+    for axis, along in enumerate((x, -z, y)):  # y up there is z up here
+        looking[..., axis] = along
+    looking /= np.sqrt(1 + s * s + t * t)[..., None]
+    return looking
 
 
 def sky_colour(looking: Array) -> Array:
@@ -133,11 +139,13 @@ def sky_colour(looking: Array) -> Array:
     above = np.exp(np.maximum(elevation, 0) / -0.32)
     colour = _mixed(_ZENITH, _HAZE, above)
     sun = np.clip(looking @ (np.array(_SUN) / np.linalg.norm(_SUN)), 0, 1)
-    _cover(colour, (1.0, 0.97, 0.88), 0.22 * sun**12 + 0.35 * sun**250, sun > 0.6)
+    glow = sun > 0.6
+    _cover(colour, (1.0, 0.97, 0.88), 0.22 * sun[glow] ** 12 + 0.35 * sun[glow] ** 250, glow)
     high = elevation > 0.05
     clouds = _cloud_cover(looking[high], elevation[high])
     colour[high] = _mixed(colour[high], _CLOUD, 0.88 * clouds)
-    _cover(colour, (1.0, 0.99, 0.95), _smooth(0.99945, 0.99965, sun), sun > 0.999)
+    disc = sun > 0.999
+    _cover(colour, (1.0, 0.99, 0.95), _smooth(0.99945, 0.99965, sun[disc]), disc)
     low = elevation < 0.12
     azimuth = np.arctan2(looking[low, 1], looking[low, 0])
     colour[low] = _with_hills(colour[low], azimuth, elevation[low])
@@ -172,13 +180,18 @@ def _with_hills(colour: Array, azimuth: Array, elevation: Array) -> Array:
 
 def _around(azimuth: Array, seed: int) -> Array:
     """A ridge by azimuth [rad], about -1 to 1, that closes after a turn."""
+    angles, ridge = _ridge(seed)
+    return np.interp(azimuth, angles, ridge) / 0.9
+
+
+@cache
+def _ridge(seed: int) -> tuple[Array, Array]:
     chance = np.random.default_rng(seed)
     angles = np.linspace(-math.pi, math.pi, 4097)
     waves = np.arange(3, 90)[:, None]
     size = chance.normal(size=waves.shape) / waves**1.15
     phase = chance.uniform(0, 2 * math.pi, waves.shape)
-    ridge = (size * np.cos(waves * angles + phase)).sum(0)
-    return np.interp(azimuth, angles, ridge) / 0.9
+    return angles, (size * np.cos(waves * angles + phase)).sum(0)
 
 
 def _sampled(square: Array, u: Array, v: Array) -> Array:
@@ -200,12 +213,15 @@ def _smooth(low: float, high: float, value: Array) -> Array:
 
 def _mixed(first: ArrayLike, second: ArrayLike, share: Array) -> Array:
     a, b = np.asarray(first, float), np.asarray(second, float)
-    return a + share[..., None] * (b - a)
+    mixed = np.empty((*share.shape, 3))
+    for k in range(3):  # one channel at a time: NumPy is slow along an axis of three
+        mixed[..., k] = a[..., k] + share * (b[..., k] - a[..., k])
+    return mixed
 
 
 def _cover(colour: Array, by: ArrayLike, share: Array, where: NDArray[np.bool_]) -> None:
-    """Mixes a colour in, in place, where there is any of it."""
-    colour[where] = _mixed(colour[where], by, np.clip(share[where], 0, 1))
+    """Mixes a colour in, in place, by its share of each place where there is any."""
+    colour[where] = _mixed(colour[where], by, np.clip(share, 0, 1))
 
 
 def _bytes(colour: Array) -> NDArray[np.uint8]:

@@ -19,13 +19,14 @@ class Timeline:
 
     Frame k shows the run k / `fps` * `speed` after its begin; the last frame is the end of the run,
     shown at its own time where that falls between two frames. A frame that is less than `margin`
-    [s] before the end is the end.
+    [s] before the end is the end. The end is shown `hold` [s] of video longer.
     """
 
     duration: float
     fps: Fraction
     speed: float = 1.0
     margin: float = 0.0
+    hold: float = 0.0
 
     def __post_init__(self) -> None:
         if not 1 <= self.fps <= 240:
@@ -42,20 +43,26 @@ class Timeline:
     def _step(self) -> float:
         return float(Fraction(self.speed) / self.fps)
 
+    @property
+    def _held(self) -> int:
+        return round(self.hold * self.fps)
+
     def elapsed(self) -> NDArray[np.float64]:
         """Time since the begin of the run that each frame shows [s]."""
         whole = int(self.duration / self._step + 1e-9)
         left = self.duration - whole * self._step
         times = np.arange(whole + 1 + int(left > self.margin), dtype=np.float64) * self._step
         times[-1] = self.duration
-        return times
+        return np.append(times, np.full(self._held, self.duration))
 
     def ticks(self) -> NDArray[np.int64]:
         """When each frame is shown, in 1/CLOCK s; rises from frame to frame."""
         elapsed = self.elapsed()
         ticks = np.round(np.arange(len(elapsed)) * float(CLOCK / self.fps)).astype(np.int64)
-        if len(ticks) > 1:
-            ticks[-1] = max(ticks[-2] + 1, round(self.duration / self.speed * CLOCK))
+        last = len(elapsed) - self._held - 1
+        if last > 0:
+            end = max(ticks[last - 1] + 1, round(self.duration / self.speed * CLOCK))
+            ticks[last:] += end - ticks[last]
         return ticks
 
 

@@ -33,7 +33,8 @@ _FASTEST_GIF = 50  # frames a second; browsers slow down faster ones
 class Look:
     """How a run is shown. `view` None: both views of one run, the second of several.
 
-    `overlay`: what is written over the pictures; `roll_cue`: whether the lean is to be seen.
+    `overlay`: what is written over and under the pictures; `roll_cue`: whether the lean is to be
+    seen, None: if the rider of the run saw it.
     """
 
     view: str | None = None
@@ -41,7 +42,7 @@ class Look:
     height: int = 720
     quality: Quality = Quality.GOOD
     overlay: bool = True
-    roll_cue: bool = True
+    roll_cue: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ def make_film(
 ) -> tuple[Film, Timeline]:
     """What the frames of a video are made from. Raises InputError."""
     tracks = [PoseTrack(run) for run in runs]
-    times = timeline(tracks, fps, speed)
+    times = timeline(runs, tracks, fps, speed)
     return film_at(runs, tracks, times.elapsed(), look, backend), times
 
 
@@ -117,7 +118,7 @@ def film_at(
     backend: Backend,
 ) -> Film:
     """A film whose frames show the runs at these times since their begin [s]."""
-    layout = make_layout(look.view, len(runs), look.width, look.height)
+    layout = make_layout(look.view, len(runs), look.width, look.height, strip=look.overlay)
     drawn = drawn_size(look.width, look.height, look.quality)
     if max(*drawn, look.width, look.height) > backend.largest:
         allowed = round(backend.largest / max(1.0, drawn[0] / look.width))
@@ -125,8 +126,11 @@ def film_at(
             f"--size {look.width}x{look.height}: too large for this OpenGL at quality "
             f"{look.quality}; at most {allowed}x{allowed}"
         )
-    reels = (make_reel(run, track, elapsed) for run, track in zip(runs, tracks, strict=True))
-    return Film(tuple(reels), layout, elapsed, look.quality, look.overlay, look.roll_cue)
+    reels = (
+        make_reel(run, track, elapsed, roll_cue=look.roll_cue)
+        for run, track in zip(runs, tracks, strict=True)
+    )
+    return Film(tuple(reels), layout, elapsed, look.quality, look.overlay)
 
 
 def _check_size(look: Look, suffix: str) -> None:

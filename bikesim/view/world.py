@@ -4,10 +4,12 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from bikesim.data import data_path
 from bikesim.errors import InputError
 from bikesim.view import textures
+from bikesim.view.clearing import Clearing
 from bikesim.view.shapes import land
 from bikesim.view.shapes.land import SQUARE, STRETCH, WINDOW
 from bikesim.view.shapes.mesh import add_mesh
@@ -38,7 +40,9 @@ class World:
     it reappears as far ahead, both along the road and across. The land is thus periodic.
     """
 
-    def __init__(self, spec: mujoco.MjSpec) -> None:
+    def __init__(self, spec: mujoco.MjSpec, path: NDArray[np.float64] | None = None) -> None:
+        """`path` (n, 2) [m], x forward and y left: where it leads off the road, nothing stands."""
+        self._clearing = Clearing(path)
         _add_shapes(spec)
         pieces = _pieces()
         for piece in pieces:
@@ -76,11 +80,17 @@ class World:
         data.mocap_pos[self._mocap, :2] = offset
         data.mocap_pos[self._mocap, 2] = -_DEPTH * far**1.5
         drawn, near = in_sight(offset, heading) & (far < 1), distance < _NEAR_ENOUGH
+        drawn &= ~self._cleared(offset + here)
         model.geom_rgba[self._near, 3] = drawn & near
         model.geom_rgba[self._far, :3] = 1.0
         model.geom_rgba[self._far, 3] = (drawn & ~near) * (1 - 0.6 * far)
         data.mocap_pos[self._ground, :2] = wrapped(-here, textures.GRASS_PERIOD)
         data.mocap_pos[self._road, :2] = [wrapped(-here, textures.ASPHALT_PERIOD)[0], -y]
+
+    def _cleared(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        cleared = self._clearing.squares(places)
+        cleared[self._along] = self._clearing.stretches(places[self._along, 0])
+        return cleared
 
 
 class _Piece(NamedTuple):

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from bikesim.errors import InputError
+from bikesim.view.canvas import make_canvas
 from bikesim.view.encode import VideoEncoder, suffix_of
 from bikesim.view.gif import GifEncoder
+from bikesim.view.layout import Box
 from bikesim.view.quality import Quality
 from bikesim.view.timeline import CLOCK
-from bikesim.view.worker import converter
 
 WIDTH, HEIGHT, FRAMES = 160, 96, 12
 COLOURS = ((200, 30, 30), (30, 180, 40), (20, 60, 210))
@@ -28,12 +29,12 @@ def picture(k: int) -> np.ndarray:
 
 
 def video(path: Path) -> Path:
-    convert = converter(VideoEncoder.pixels)
+    canvas = make_canvas(VideoEncoder.pixels, WIDTH, HEIGHT)
     kind = path.suffix[1:]
     encoder = VideoEncoder(path, kind, WIDTH, HEIGHT, Fraction(30), Quality.GOOD)
     for k in range(FRAMES):
-        pixels = np.frombuffer(convert(picture(k)), np.uint8).reshape(HEIGHT * 3 // 2, WIDTH)
-        encoder.write(pixels, k * CLOCK // 30)
+        canvas.put(Box(0, 0, WIDTH, HEIGHT), picture(k))
+        encoder.write(canvas.pixels, k * CLOCK // 30)
     encoder.close()
     return path
 

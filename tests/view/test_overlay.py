@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from bikesim.record.reader import Run
+from bikesim.view.canvas import RgbCanvas
 from bikesim.view.drawing import ORANGE, SKY, VERMILION
+from bikesim.view.layout import Box
 from bikesim.view.overlay import Overlay
 from bikesim.view.pose import PoseTrack
 from bikesim.view.reel import Reel, make_reel
@@ -22,12 +24,13 @@ def reel(run: Run) -> Reel:
 def drawn(
     reel: Reel, *, roll: float = 0.0, torque: float = 0.0, time: float = 0.0, lean: bool = True
 ) -> np.ndarray:
-    area = np.full((HEIGHT, WIDTH, 3), GREY, np.uint8)
+    canvas = RgbCanvas(WIDTH, HEIGHT)
+    canvas.pixels[:] = GREY
     moment = reel.moment(0)
     pose = moment.pose._replace(roll=np.radians(roll))
-    overlay = Overlay(reel, 0.5, lean=lean, torque_scale=2.0)
-    overlay.draw(area, moment._replace(pose=pose, feedback=torque), time)
-    return area
+    overlay = Overlay(reel, Box(0, 0, WIDTH, HEIGHT), 0.5, lean=lean, torque_scale=2.0)
+    overlay.draw(canvas, moment._replace(pose=pose, feedback=torque), time)
+    return canvas.pixels
 
 
 def columns(area: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:

@@ -35,6 +35,13 @@ def test_a_run_of_one_tick_is_one_frame():
     assert Timeline(0.0, Fraction(30)).elapsed().tolist() == [0.0]
 
 
+def test_an_end_that_is_held_is_shown_again_and_again_at_the_same_rate():
+    line = Timeline(0.95, Fraction(10), hold=0.3)
+    assert line.elapsed()[-4:].tolist() == [0.95] * 4
+    assert np.diff(line.ticks())[-4:].tolist() == pytest.approx([4500, 9000, 9000, 9000])
+    assert len(line.ticks()) == len(line.elapsed()) == 11 + 3
+
+
 def test_frames_are_shown_at_rising_times():
     ticks = Timeline(10.0, frames_a_second(29.97), speed=3.3).ticks()
     assert (np.diff(ticks) > 0).all()

@@ -13,6 +13,8 @@ from bikesim.view.shapes.colour import Colour, texture_coordinate
 
 Array = NDArray[np.float64]
 
+_NO_AREA = 1e-12  # m², twice that of a triangle that is none
+
 
 class Mesh(NamedTuple):
     """Corners (n, 3) [m] with normals (n, 3) and texture coordinates (n, 2), triangles (m, 3)."""
@@ -75,27 +77,35 @@ def add_mesh(spec: mujoco.MjSpec, name: str, mesh: Mesh) -> None:
 def surface(grid: Array, normals: Array, colour: Colour, *, closed: bool) -> Mesh:
     """A sheet of corners (rows, columns, 3); `closed` joins the last column to the first."""
     rows, columns, _ = grid.shape
-    index = np.arange(rows * columns).reshape(rows, columns)
-    after = np.roll(index, -1, axis=1) if closed else index[:, 1:]
-    before = index if closed else index[:, :-1]
-    a, b, c, d = before[:-1], after[:-1], after[1:], before[1:]
-    triangles = np.concatenate(
-        [np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)]
-    )
-    corners = grid.reshape(-1, 3)
-    area = np.linalg.norm(
-        np.cross(
-            corners[triangles[:, 1]] - corners[triangles[:, 0]],
-            corners[triangles[:, 2]] - corners[triangles[:, 0]],
-        ),
-        axis=1,
-    )
+    triangles, corners = _grid_triangles(rows, columns, closed), grid.reshape(-1, 3)
+    start, *ends = corners[triangles.T]
+    (a, b, c), (d, e, f) = ((end - start).T for end in ends)
+    square = (b * f - c * e) ** 2 + (c * d - a * f) ** 2 + (a * e - b * d) ** 2
     return Mesh(
         corners,
         unit(normals.reshape(-1, 3)),
         _coordinates(colour, rows * columns),
-        triangles[area > 1e-12],
+        triangles[square > _NO_AREA**2],
     )
+
+
+@cache
+def _grid_triangles(rows: int, columns: int, closed: bool) -> NDArray[np.int64]:
+    """Two for each cell of a grid."""
+    index = np.arange(rows * columns).reshape(rows, columns)
+    after = np.roll(index, -1, axis=1) if closed else index[:, 1:]
+    before = index if closed else index[:, :-1]
+    a, b, c, d = before[:-1], after[:-1], after[1:], before[1:]
+    return np.concatenate(
+        [np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)]
+    )
+
+
+@cache
+def _circle(sides: int) -> tuple[Array, Array]:
+    """Cosines and sines of as many angles."""
+    angle = 2 * math.pi * np.arange(sides) / sides
+    return np.cos(angle), np.sin(angle)
 
 
 def polygon(corners: ArrayLike, colour: Colour) -> Mesh:
@@ -111,13 +121,16 @@ def polygon(corners: ArrayLike, colour: Colour) -> Mesh:
 def turned_profile(profile: Sequence[tuple[float, float]], colour: Colour, sides: int = 10) -> Mesh:
     """The surface that a line of (radius, z) [m] sweeps about the z axis, from below upwards."""
     line = np.array(profile, float)
-    slope = np.gradient(line, axis=0)
-    angle = 2 * math.pi * np.arange(sides) / sides
-    cos, sin = np.cos(angle), np.sin(angle)
-    radius, height = line[:, :1], np.broadcast_to(line[:, 1:], (len(line), sides))
-    outward, upward = slope[:, 1:], np.broadcast_to(-slope[:, :1], (len(line), sides))
-    grid = np.stack([radius * cos, radius * sin, height], -1)
-    normals = np.stack([outward * cos, outward * sin, upward], -1)
+    slope = np.empty_like(line)
+    slope[0], slope[-1] = line[1] - line[0], line[-1] - line[-2]
+    slope[1:-1] = (line[2:] - line[:-2]) / 2
+    cos, sin = _circle(sides)
+    grid, normals = np.empty((2, len(line), sides, 3))
+    for swept, out, up in (
+        (grid, line[:, :1], line[:, 1:]),
+        (normals, slope[:, 1:], -slope[:, :1]),
+    ):
+        swept[..., 0], swept[..., 1], swept[..., 2] = out * cos, out * sin, up
     return surface(grid, normals, colour, closed=True)
 
 
@@ -182,13 +195,18 @@ def ellipsoid(
     centre: ArrayLike, radii: ArrayLike, colour: Colour, sides: int = 14, rings: int = 9
 ) -> Mesh:
     """Axes along x, y, z."""
-    arc = np.linspace(-math.pi / 2, math.pi / 2, rings)
-    ball = turned_profile([(math.cos(t), math.sin(t)) for t in arc], colour, sides)
-    scale = np.asarray(radii, float)
+    ball, scale = _ball(sides, rings), np.asarray(radii, float)
     return ball._replace(
         corners=ball.corners * scale + np.asarray(centre, float),
         normals=unit(ball.corners / scale),
+        texture=_coordinates(colour, len(ball.corners)),
     )
+
+
+@cache
+def _ball(sides: int, rings: int) -> Mesh:
+    arc = np.linspace(-math.pi / 2, math.pi / 2, rings)
+    return turned_profile([(math.cos(t), math.sin(t)) for t in arc], Colour.STEEL, sides)
 
 
 def box(centre: ArrayLike, half: ArrayLike, colour: Colour) -> Mesh:
@@ -229,17 +247,22 @@ def ring(profile: Sequence[tuple[float, float]], colour: Colour, sides: int) -> 
 
 def aligned(direction: ArrayLike) -> Array:
     """A rotation matrix that turns the z axis into a direction."""
-    z = unit(np.asarray(direction, float))
-    helper = np.array([0.0, 1.0, 0.0]) if abs(z[1]) < 0.9 else np.array([1.0, 0.0, 0.0])
-    x = unit(np.cross(helper, z))
-    return np.stack([x, np.cross(z, x), z], axis=1)
+    a, b, c = np.asarray(direction, float).tolist()  # floats: this is called for each limb shown
+    length = math.sqrt(a * a + b * b + c * c) or 1.0
+    a, b, c = a / length, b / length, c / length
+    # Square to it and to y; or to x, where it is almost along y.
+    d, e, f = (c, 0.0, -a) if abs(b) < 0.9 else (0.0, -c, b)
+    length = math.sqrt(d * d + e * e + f * f)
+    d, e, f = d / length, e / length, f / length
+    return np.array([[d, b * f - c * e, a], [e, c * d - a * f, b], [f, a * e - b * d, c]])
 
 
 def unit(vectors: Array) -> Array:
     """Vectors (..., 3) made of length 1; those of no length stay."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(length > 0, length, 1)
+    length = np.sqrt((vectors * vectors).sum(-1, keepdims=True))
+    length[length == 0] = 1
+    return vectors / length
 
 
 def _coordinates(colour: Colour, count: int) -> Array:
-    return np.tile(texture_coordinate(colour), (count, 1))
+    return np.broadcast_to(texture_coordinate(colour), (count, 2))
