@@ -36,7 +36,7 @@ class Course(Protocol):
 class Haptics(Protocol):
     """What an experiment makes of the feedback torque before it is checked: less, later, none."""
 
-    def __call__(self, time: float, torque: Real) -> Real:
+    def __call__(self, time: float, torque: Real, /) -> Real:
         """The torque [N m] to be checked and sent, of that which the law gives at a time [s]."""
         ...
 

@@ -26,6 +26,25 @@ class Settings(BaseModel):
             raise _one_line(type(self), error) from None
 
 
+def of_kind(
+    given: dict[str, Any], model: type[Settings], kinds: Mapping[str, Mapping[str, Any]]
+) -> dict[str, Any]:
+    """What is given of a group that has a `kind`, with the figures of that kind in its place.
+
+    Raises InputError for a kind that is none and for figures that only another kind has.
+    """
+    kind = given["kind"]
+    if kind not in kinds:
+        raise unknown(f"{model.table}.kind", kind, kinds)
+    for key, value in given.items():
+        if key in model.model_fields and key not in ("kind", *kinds[kind]):
+            raise InputError(
+                f"{model.table}.{key} = {_shown(value)}: kind {kind} has no such figure; "
+                f"it has: {', '.join(kinds[kind]) or 'none'}"
+            )
+    return {**kinds[kind], **given}
+
+
 def _one_line(model: type[Settings], error: ValidationError) -> InputError:
     errors = error.errors()
     # A key that is misspelt is missing too, but that is not what is wrong with it.
@@ -59,7 +78,7 @@ def _allowed(model: type[Settings], error: Mapping[str, Any]) -> str:
     if kind in ("too_long", "too_short"):
         context = error["ctx"]
         return f"a list of {context.get('max_length', context.get('min_length'))}"
-    if kind == "model_type" and error["loc"][-1:] in (("rider",), ("rig",)):
+    if kind == "model_type" and error["loc"][-1:] in (("rider",), ("rig",), ("path",)):
         return "a name or a table"
     return _KINDS.get(kind) or error["msg"].removeprefix("Input should be ")
 
@@ -70,6 +89,7 @@ _KINDS = {
     "string_type": "text",
     "tuple_type": "a list",
     "model_type": "a table",
+    "dict_type": "a table",
 }
 _BOUNDS = {
     "greater_than_equal": ("ge", "minimum", "at least"),

@@ -21,6 +21,14 @@ def located(where: str) -> Iterator[None]:
         raise InputError(f"{where}: {error}") from error
 
 
+def is_there(path: Path) -> bool:
+    """Whether it is a file, also for names that no file can have."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def is_special(path: Path) -> bool:
     """Whether it is there but neither file nor folder: a pipe or a device may never end."""
     try:
@@ -29,9 +37,11 @@ def is_special(path: Path) -> bool:
         return False
 
 
-def read_text(path: Path, kind: str) -> str:
-    """The text of a `kind` of file. Raises InputError for what is no small text file."""
-    return _decoded(_content(path, kind))
+def read_text(path: Path, kind: str, largest: int = _LARGEST) -> str:
+    """The text of a `kind` of file. Raises InputError for what is no text file, or above the
+    `largest` size [bytes].
+    """
+    return _decoded(_content(path, kind, largest))
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
@@ -50,12 +60,14 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise InputError(f"not TOML: {error}") from None
 
 
-def _content(path: Path, kind: str) -> bytes:
+def _content(path: Path, kind: str, largest: int) -> bytes:
     try:
         if path.is_dir():
             raise InputError(f"is a folder; give a {kind} file in it")
-        if is_special(path) or path.stat().st_size > _LARGEST:
-            raise InputError(f"is not a {kind} file (a text file of less than 1 MB)")
+        if is_special(path) or path.stat().st_size > largest:
+            raise InputError(
+                f"is not a {kind} file (a text file of less than {largest / 1e6:g} MB)"
+            )
         return path.read_bytes()
     except OSError as error:
         raise InputError((error.strerror or str(error)).lower()) from None

@@ -1,65 +1,70 @@
-"""Speed and disturbances of a scenario as the loop asks for them."""
+"""Speed and disturbances of a scenario as the loop asks for them; of one, or of many at once."""
 
-import math
-from bisect import bisect_right
 from collections.abc import Sequence
 
-from bikesim.experiment.scenario import Push, Scenario
+import numpy as np
+
+from bikesim.experiment.moments import BLOCK, DisturbanceMoments
+from bikesim.experiment.scenario import Scenario
+from bikesim.experiment.speed import SpeedProfile
 from bikesim.loop import Moments
 from bikesim.model.bicycle import Bicycle
+from bikesim.model.real import Real
 
-_NO_PUSH = Moments()
+_NONE = Moments()
 
 
 class ScenarioCourse:
-    """Constant or piecewise linear speed, and lateral pushes, by time [s]."""
+    """A scenario's speed and disturbances by time [s]; a disturbance is the nearest tick's."""
 
     def __init__(self, scenario: Scenario, bicycle: Bicycle) -> None:
-        self._constant = scenario.speed
-        self._times = [time for time, _ in scenario.speed_profile]
-        self._speeds = [speed for _, speed in scenario.speed_profile]
-        self._pushes = [(push, moments_per_newton(push, bicycle)) for push in scenario.pushes]
-
-    def speed(self, time: float) -> float:
-        """Forward speed [m/s]; before the first and after the last given time, that one's."""
-        if not self._times:
-            return self._constant
-        return _interpolated(time, self._times, self._speeds)
+        self.speed = SpeedProfile(scenario)
+        self._period = scenario.period
+        self._disturbances = DisturbanceMoments(scenario, bicycle)
+        self._block, self._moments = -1, [_NONE]
 
     def disturbance(self, time: float) -> Moments:
-        """The generalised forces of all pushes [N m]."""
-        if not self._pushes:
-            return _NO_PUSH
-        roll = steer = 0.0
-        for push, per_newton in self._pushes:
-            force = push_force(push, time)
-            roll += force * per_newton.roll
-            steer += force * per_newton.steer
-        return Moments(roll, steer)
+        """The generalised forces of all pushes and disturbances [N m]."""
+        if self._disturbances.none:
+            return _NONE
+        block, tick = divmod(round(time / self._period), BLOCK)
+        if block != self._block:
+            rows = self._disturbances.block(block).T.tolist()
+            self._block, self._moments = block, [Moments._make(row) for row in rows]
+        return self._moments[tick]
 
 
-def push_force(push: Push, time: float) -> float:
-    """The lateral force [N] at a time [s]: half a sine whose integral is the impulse."""
-    phase = (time - push.time) / push.duration
-    if not 0 < phase < 1:
-        return 0.0
-    return push.impulse * math.pi / (2 * push.duration) * math.sin(math.pi * phase)
+class BatchCourse:
+    """The courses of scenarios of one loop period and speed profile, as arrays (n,).
 
-
-def moments_per_newton(push: Push, bicycle: Bicycle) -> Moments:
-    """T_φ and T_δ [N m] of one newton to the right at the push's point of the rear frame.
-
-    By virtual work: a roll moves the point by height · φ to the right, and steering at rest yaws
-    the rear frame about its contact by c cos λ / w (eq. 8), which moves it by that times `ahead`.
+    Each has bit for bit what it has alone. What is equal for all is a float; while the speeds do
+    not change they are the same object.
     """
-    yaw_per_steer = bicycle.trail * math.cos(bicycle.steer_axis_tilt) / bicycle.wheelbase
-    return Moments(roll=push.height, steer=push.ahead * yaw_per_steer)
 
+    def __init__(self, scenarios: Sequence[Scenario], bicycle: Bicycle) -> None:
+        first = scenarios[0]
+        self._profile, self._period = SpeedProfile(first), first.period
+        speeds = [one.speed for one in scenarios]
+        self._speeds: Real = None
+        if not first.speed_profile and len(set(speeds)) > 1:
+            self._speeds = np.array(speeds)
+        self._disturbances = [DisturbanceMoments(one, bicycle) for one in scenarios]
+        self._none = all(one.none for one in self._disturbances)
+        self._block, self._moments = -1, np.zeros((0, 2, 0))
 
-def _interpolated(x: float, xs: Sequence[float], ys: Sequence[float]) -> float:
-    i = bisect_right(xs, x)
-    if i == 0:
-        return ys[0]
-    if i == len(xs):
-        return ys[-1]
-    return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1])
+    def speed(self, time: float) -> Real:
+        """Forward speeds [m/s]."""
+        return self._profile(time) if self._speeds is None else self._speeds
+
+    def disturbance(self, time: float) -> Moments:
+        """The generalised forces of all pushes and disturbances [N m]."""
+        if self._none:
+            return _NONE
+        block, tick = divmod(round(time / self._period), BLOCK)
+        if block != self._block:
+            moments = np.stack([one.block(block) for one in self._disturbances])
+            self._block, self._moments = block, np.zeros(moments.shape[::-1])
+            if moments.any():
+                self._moments[:] = moments.transpose(2, 1, 0)
+        roll, steer = self._moments[tick]
+        return Moments(roll, steer)

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from bikesim.experiment.disturbances import Disturbance
 from bikesim.experiment.scenario import Push, Scenario
 
 
@@ -19,7 +20,11 @@ class Key(NamedTuple):
 
 def scenario_keys() -> list[Key]:
     """The keys in their order; a table's keys as table.key."""
-    return [*_keys(Scenario, ""), *_keys(Push, "pushes.")]
+    return [
+        *_keys(Scenario, ""),
+        *_keys(Push, "pushes."),
+        *_keys(Disturbance, "disturbances."),
+    ]
 
 
 def _keys(model: type[BaseModel], prefix: str) -> Iterator[Key]:
@@ -39,4 +44,5 @@ def _told(field: FieldInfo, prefix: str) -> str:
         if "default:" in (field.description or ""):
             return ""
         return "that of the rider named" if prefix == "rider." else "none"
-    return str(field.default)
+    # As TOML has it.
+    return str(field.default).lower() if isinstance(field.default, bool) else str(field.default)

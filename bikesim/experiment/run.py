@@ -11,17 +11,22 @@ import numpy as np
 from bikesim import bicycles
 from bikesim.experiment.course import ScenarioCourse
 from bikesim.experiment.scenario import Scenario, to_toml
+from bikesim.experiment.torque_record import with_recorded_torque
 from bikesim.guard import Guard
-from bikesim.loop import Start, ride
+from bikesim.haptics import make_haptics
+from bikesim.loop import Haptics, Start, ride
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.eigen import bicycle_modes, simulator_modes
 from bikesim.model.haptic import HapticBicycle
 from bikesim.model.law import Law
+from bikesim.model.real import Real
 from bikesim.model.simulator import handlebar_inertia
+from bikesim.path.building import make_path
 from bikesim.record.channels import TICK_CHANNELS
 from bikesim.record.header import Ending, RunHeader
 from bikesim.record.provenance import Provenance
 from bikesim.record.writer import RunWriter
+from bikesim.rider.base import Setting
 from bikesim.rider.building import make_rider
 from bikesim.rig.virtual import VirtualRig
 
@@ -37,6 +42,7 @@ class Parts:
     guard: Guard
     course: ScenarioCourse
     start: Start
+    haptics: Haptics
 
 
 def scenario_bicycle(scenario: Scenario) -> Bicycle:
@@ -45,34 +51,66 @@ def scenario_bicycle(scenario: Scenario) -> Bicycle:
     return bicycle if scenario.gravity is None else bicycle.with_gravity(scenario.gravity)
 
 
+def rig_inertia(scenario: Scenario, bicycle: Bicycle) -> float:
+    """I_δ [kg m²] of the scenario's rig without arms: as it says, else as its law asks."""
+    return scenario.rig.inertia or handlebar_inertia(bicycle, Law(scenario.law))
+
+
+def make_setting(scenario: Scenario, bicycle: Bicycle, speed: Real) -> Setting:
+    """What a scenario's rider knows of where he rides; `speed` [m/s] at the start."""
+    preview = scenario.vision.preview
+    return Setting(
+        bicycle=bicycle,
+        law=Law(scenario.law),
+        inertia=rig_inertia(scenario, bicycle),
+        speed=speed,
+        step=scenario.physics_step,
+        path=make_path(scenario.path),
+        preview=math.inf if preview is None else preview,
+    )
+
+
+def sources(scenario: Scenario) -> tuple[np.random.Generator, np.random.Generator]:
+    """The noise of a run, from its seed: the rider's, and the sensors'."""
+    for_rider, for_sensors = np.random.SeedSequence(scenario.seed).spawn(2)
+    return np.random.default_rng(for_rider), np.random.default_rng(for_sensors)
+
+
 def build(scenario: Scenario) -> Parts:
     """Everything of a run but its record. Raises InputError."""
     bicycle = scenario_bicycle(scenario)
-    law = Law(scenario.law)
-    for_rider, for_sensors = np.random.SeedSequence(scenario.seed).spawn(2)
-    rider = make_rider(scenario.rider, scenario.physics_step, np.random.default_rng(for_rider))
+    course = ScenarioCourse(scenario, bicycle)
+    for_rider, for_sensors = sources(scenario)
+    rider = make_rider(
+        with_recorded_torque(scenario.rider),
+        make_setting(scenario, bicycle, course.speed(0.0)),
+        scenario.vision,
+        for_rider,
+    )
     rig = VirtualRig(
         scenario.rig,
         rider,
         name=scenario.rig.name,
-        inertia=scenario.rig.inertia or handlebar_inertia(bicycle, law),
+        inertia=rig_inertia(scenario, bicycle),
         steer_axis_tilt=bicycle.steer_axis_tilt,
         period=scenario.period,
         step=scenario.physics_step,
-        random=np.random.default_rng(for_sensors),
+        random=for_sensors,
+        steer=math.radians(scenario.start.steer_deg),
     )
     return Parts(
         scenario,
         bicycle,
-        HapticBicycle(bicycle, law),
+        HapticBicycle(bicycle, Law(scenario.law)),
         rig,
         Guard(scenario.guard, scenario.period, scenario.rig.steer_stop),
-        ScenarioCourse(scenario, bicycle),
+        course,
         Start(
             math.radians(scenario.start.roll_deg),
             math.radians(scenario.start.roll_rate_deg_s),
             math.radians(scenario.start.heading_deg),
         ),
+        make_haptics(scenario.haptics, scenario.period),
     )
 
 
@@ -122,6 +160,7 @@ def ride_parts(parts: Parts, record, interrupted: Callable[[], bool] = lambda: F
         course=parts.course,
         start=parts.start,
         ticks=parts.scenario.ticks,
+        haptics=parts.haptics,
         interrupted=interrupted,
     )
 

@@ -1,20 +1,28 @@
 """What a run is: everything a user may set, validated; TOML in, TOML out."""
 
+import re
 from itertools import pairwise
+from math import pi
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, Strict, model_validator
 
 from bikesim import textfile
+from bikesim.experiment.disturbances import Disturbance
 from bikesim.guard import GuardSettings
+from bikesim.haptics import HapticsSettings, make_haptics
+from bikesim.path.settings import PathSettings
+from bikesim.rider.kinds import beside
 from bikesim.rider.settings import RiderSettings
+from bikesim.rider.vision import VisionSettings
 from bikesim.rig.settings import RigSettings
 from bikesim.settings import Settings
 
 _Time = Annotated[float, Field(ge=0, le=86400)]
 _Speed = Annotated[float, Field(ge=0, le=30)]
 _Arm = Annotated[float, Field(ge=-10, le=10)]
+_Lean = Annotated[float, Field(gt=-90, lt=90)]
 _Turn = Annotated[float, Field(ge=-360, le=360)]
 # TOML has lists, not tuples.
 _List = Strict(False)
@@ -25,9 +33,10 @@ class StartSettings(Settings):
 
     table: ClassVar[str] = "start"
 
-    roll_deg: Annotated[float, Field(gt=-90, lt=90)] = Field(default=0.0, description="Roll [deg].")
+    roll_deg: _Lean = Field(default=0.0, description="Roll [deg].")
     roll_rate_deg_s: _Turn = Field(default=0.0, description="Roll rate [deg/s].")
     heading_deg: _Turn = Field(default=0.0, description="Heading [deg].")
+    steer_deg: _Lean = Field(default=0.0, description="Steer, of a bar at rest [deg].")
 
 
 class Push(Settings):
@@ -72,6 +81,15 @@ class Scenario(Settings):
         default="paper",
         description="Haptic law: paper (eq. 4 and 6), momentum (exact), off (no feedback).",
     )
+    haptics: HapticsSettings = Field(
+        default=HapticsSettings(), description="What is made of the feedback torque."
+    )
+    vision: VisionSettings = Field(
+        default=VisionSettings(), description="What the display shows the rider."
+    )
+    path: PathSettings = Field(
+        default=PathSettings(), description="A kind of path, or a table with its figures."
+    )
     rider: RiderSettings = Field(
         default=RiderSettings(),
         description="A rider by name, or a table with its figures.",
@@ -95,6 +113,9 @@ class Scenario(Settings):
     pushes: Annotated[tuple[Push, ...], _List] = Field(
         default=(), description="Lateral pushes on the rear frame."
     )
+    disturbances: Annotated[tuple[Disturbance, ...], _List] = Field(
+        default=(), description="Multisine torques, gusts and wind."
+    )
     guard: GuardSettings = Field(default=GuardSettings(), description="Limits.")
 
     @model_validator(mode="after")
@@ -106,6 +127,18 @@ class Scenario(Settings):
             raise ValueError(
                 f"duration = {self.duration} s: must be at least one loop period, {self.period} s"
             )
+        steer, stop = self.start.steer_deg, self.rig.steer_stop_deg
+        if abs(steer) >= stop:
+            raise ValueError(
+                f"start.steer_deg = {steer}: must be within the rig's stops, {stop} deg each side"
+            )
+        for one in self.disturbances:
+            if one.highest is not None and one.highest >= pi / self.period:
+                raise ValueError(
+                    f"disturbances.highest = {one.highest} rad/s: must be below "
+                    f"{pi / self.period:.6g} rad/s, half the frequency of the loop"
+                )
+        make_haptics(self.haptics, self.period)
         return self
 
     @property
@@ -115,12 +148,39 @@ class Scenario(Settings):
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """A scenario file's keys, not yet checked. Raises InputError."""
-    return textfile.read_toml(path, "scenario")
+    """A scenario file's keys, not yet checked; files it names are sought beside it first.
+
+    Raises InputError.
+    """
+    return found_beside(textfile.read_toml(path, "scenario"), path.parent)
+
+
+def found_beside(keys: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The keys with the path's file, and that of a rider of one's own, in this folder if it is
+    there; else as it is named.
+    """
+    keys = _with_rider_beside(keys, folder)
+    path = keys.get("path")
+    file = path.get("file") if isinstance(path, dict) else path
+    if not isinstance(file, str) or "." not in file or not textfile.is_there(folder / file):
+        return keys
+    found = str(folder / file)
+    return {**keys, "path": {**path, "file": found} if isinstance(path, dict) else found}
+
+
+def _with_rider_beside(keys: dict[str, Any], folder: Path) -> dict[str, Any]:
+    rider = keys.get("rider")
+    name = rider.get("name") if isinstance(rider, dict) else rider
+    if not isinstance(name, str):
+        return keys
+    found = beside(name, folder)
+    return {**keys, "rider": {**rider, "name": found} if isinstance(rider, dict) else found}
 
 
 def to_toml(scenario: Scenario) -> str:
     """The scenario with every figure that it has, as a file that runs it again."""
     import tomli_w
 
-    return tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True))
+    text = tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True))
+    # Pairs of numbers, of which a path may have thousands, a line each.
+    return re.sub(r"\[\s+([-+.\de]+),\s+([-+.\de]+),\s+\]", r"[\1, \2]", text)

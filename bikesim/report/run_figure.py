@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bikesim.record.reader import Run
+from bikesim.report.run_path import draw_deviation, draw_ways, prescribed, thinned
 from bikesim.report.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, figure, label, styled
 
-_MOST_POINTS = 6000  # more than a page can show
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, GREY)
 _FEEDBACK, _RIDER = "feedback torque $T_f$", "rider torque $T_δ$"
 # Above the axes, where no line runs.
@@ -19,20 +19,32 @@ _ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1, 0.98), "ncols": 4, "b
 
 
 def run_figure(runs: Sequence[Run]) -> Figure:
-    """Roll, steer, torques over time and the path over ground, one colour a run."""
+    """Roll, steer, torques over time and the path over ground, one colour a run.
+
+    Where a path other than the straight line was prescribed, also the deviation from it. Raises
+    InputError for a record whose scenario's path cannot be read.
+    """
+    to_follow = not all(prescribed(run).straight for run in runs)
+    colours = _cycle(len(runs))
     with styled():
-        drawn = figure(7.2, 7.6)
-        roll, steer, torque, path = drawn.subplots(4, 1, height_ratios=(1, 1, 1.2, 0.9))
-        for axes in (steer, torque):
-            axes.sharex(roll)
-        for run, colour in zip(runs, _cycle(len(runs)), strict=True):
-            _draw(run, colour, len(runs) > 1, roll, steer, torque, path)
+        drawn = figure(7.2, 9.2 if to_follow else 7.6)
+        heights = (1, 1, 1.2, 0.8, 1.2) if to_follow else (1, 1, 1.2, 0.9)
+        axes = drawn.subplots(len(heights), 1, height_ratios=heights)
+        roll, steer, torque, *deviation, path = axes
+        for other in (steer, torque, *deviation):
+            other.sharex(roll)
+        for run, colour in zip(runs, colours, strict=True):
+            _draw(run, colour, len(runs) > 1, roll, steer, torque)
+            for one in deviation:
+                draw_deviation(one, run, colour)
+        draw_ways(path, runs, colours)
         label(roll, y="roll φ [deg]", title=_title(runs))
         label(steer, y="steer δ [deg]")
-        label(torque, x="time [s]", y="torque [N m]")
+        label(torque, y="torque [N m]")
+        for one in deviation:
+            label(one, y="off the path [m]")
+        label(axes[-2], x="time [s]", y=axes[-2].get_ylabel())
         label(path, x="forward x [m]", y="to the right y [m]")
-        path.set_aspect("equal", adjustable="datalim")
-        path.invert_yaxis()  # seen from above with x to the right, right is down
         if len(runs) > 1:
             roll.legend(**_ABOVE)
             torque.legend(handles=_line_styles(), **_ABOVE)
@@ -41,10 +53,8 @@ def run_figure(runs: Sequence[Run]) -> Figure:
     return drawn
 
 
-def _draw(
-    run: Run, colour: str, several: bool, roll: Axes, steer: Axes, torque: Axes, path: Axes
-) -> None:
-    thin = slice(None, None, max(1, run.ticks // _MOST_POINTS))
+def _draw(run: Run, colour: str, several: bool, roll: Axes, steer: Axes, torque: Axes) -> None:
+    thin = thinned(run)
     time = run.time[thin]
     name = f"{_haptics(run)}, {run.rider}" if several else ""
     roll.plot(time, np.degrees(run.channel("roll")[thin]), color=colour, label=name)
@@ -56,7 +66,6 @@ def _draw(
         torque.plot(
             time, run.channel("rider_torque")[thin], style, color=shade, lw=0.9, label=_RIDER
         )
-    path.plot(run.channel("x")[thin], run.channel("y")[thin], color=colour)
     if run.ending is not None and run.ending.fell:
         roll.plot(time[-1:], np.degrees(run.channel("roll")[-1:]), "x", color=colour, ms=8, mew=2)
 

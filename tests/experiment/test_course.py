@@ -1,20 +1,26 @@
-import math
+from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from bikesim.bicycles import load
-from bikesim.experiment.course import ScenarioCourse, moments_per_newton, push_force
-from bikesim.experiment.scenario import Push, Scenario
+from bikesim.experiment.course import BatchCourse, ScenarioCourse
+from bikesim.experiment.moments import BLOCK
+from bikesim.experiment.scenario import Scenario
 from bikesim.loop import Moments
 from bikesim.model.bicycle import Bicycle
-from bikesim.model.haptic import HapticBicycle
-from bikesim.model.law import Law
-from bikesim.model.parameters import BicycleParameters
-from bikesim.model.whipple import whipple_matrices
 
-PUSH = Push(time=1.0, impulse=3.0, duration=0.2, height=0.8, ahead=0.4)
+PUSH = {"time": 1.0, "impulse": 3.0, "duration": 0.2, "height": 0.8, "ahead": 0.4}
+EACH_KIND = [
+    {"kind": "roll-multisine"},
+    {"kind": "steer-multisine", "start": 0.5, "stop": 1.5, "phases": "schroeder"},
+    {"kind": "wind", "wind_rms": 2.0},
+    {"kind": "gust", "start": 1.0},
+]
+
+
+def _scenario(**keys: Any) -> Scenario:
+    return Scenario(**keys)
 
 
 @pytest.fixture(scope="module")
@@ -39,26 +45,9 @@ class TestSpeed:
         assert [course.speed(t) for t in (0.0, 1.0, 2.0)] == [2.0, 2.0, 2.0]
 
 
-class TestPush:
-    def test_its_force_integrates_to_the_impulse(self):
-        total, _ = quad(lambda t: push_force(PUSH, t), 0.5, 2.0, points=[1.0, 1.2])
-        assert total == pytest.approx(3.0, rel=1e-10)
-
-    @pytest.mark.parametrize("time", [0.0, 0.999, 1.0, 1.2001, 99.0])
-    def test_there_is_none_before_and_after(self, time: float):
-        assert push_force(PUSH, time) == 0.0
-
-    def test_it_is_strongest_in_its_middle(self):
-        assert push_force(PUSH, 1.1) == pytest.approx(3.0 * math.pi / 0.4)
-
-    @pytest.mark.parametrize("period", [1e-3, 5e-3, 20e-3])
-    def test_sampled_by_the_loop_it_still_has_its_impulse(self, period: float):
-        """What the model makes of it: straight lines between the ticks."""
-        forces = [push_force(PUSH, k * period) for k in range(round(2 / period))]
-        assert np.trapezoid(forces, dx=period) == pytest.approx(3.0, rel=0.01)
-
+class TestDisturbance:
     def test_several_add_up(self, benchmark: Bicycle):
-        one, two = (ScenarioCourse(Scenario(pushes=(PUSH,) * n), benchmark) for n in (1, 2))
+        one, two = (ScenarioCourse(_scenario(pushes=[PUSH] * n), benchmark) for n in (1, 2))
         single, double = one.disturbance(1.1), two.disturbance(1.1)
         assert double == pytest.approx((2 * single.roll, 2 * single.steer))
 
@@ -66,27 +55,71 @@ class TestPush:
         assert ScenarioCourse(Scenario(), benchmark).disturbance(1.0) == Moments(0, 0)
 
     def test_to_the_right_leans_right(self, benchmark: Bicycle):
-        course = ScenarioCourse(Scenario(pushes=(PUSH,)), benchmark)
-        assert course.disturbance(1.1).roll > 0
+        for keys in ({"pushes": [PUSH]}, {"disturbances": [{"kind": "gust"}]}):
+            course = ScenarioCourse(_scenario(**keys), benchmark)
+            assert course.disturbance(1.1).roll > 0
 
-    def test_its_moments_are_those_of_a_weight_there(self, benchmark: Bicycle):
-        """A small roll turns a mass m on the rear frame into a lateral force m g φ at its place:
-        the terms that the mass adds to -g K0 are the moments of that force."""
-        p = benchmark.parameters
-        assert p is not None
-        values = {name: getattr(p, name) for name in BicycleParameters.__slots__}
-        heavier = BicycleParameters(**{**values, "mB": p.mB + 1.0})
-        added = -(whipple_matrices(heavier).K0 - benchmark.matrices.K0)[0]
-        moments = moments_per_newton(Push(time=0, impulse=1, height=-p.zB, ahead=p.xB), benchmark)
-        assert (moments.roll, moments.steer) == pytest.approx(tuple(added), rel=1e-9)
+    def test_is_a_function_of_time(self, benchmark: Bicycle):
+        """In whatever order it is asked, back as well as forth."""
+        scenario = _scenario(disturbances=EACH_KIND, pushes=[PUSH])
+        forth, to_and_fro = (ScenarioCourse(scenario, benchmark) for _ in range(2))
+        times = [1e-3 * k for k in range(0, 4 * BLOCK, 100)]
+        inorder = {t: forth.disturbance(t) for t in times}
+        for t in np.random.default_rng(5).permutation(times).tolist():
+            assert to_and_fro.disturbance(t) == inorder[t]
 
-    def test_a_short_one_gives_the_momentum_of_its_impulse(self, benchmark: Bicycle):
-        """On the paper's law with the bar held: M_φφ Δφ̇ = height times impulse."""
-        push = Push(time=0.01, impulse=2.0, duration=0.02, height=0.9)
-        course = ScenarioCourse(Scenario(pushes=(push,)), benchmark)
-        haptic = HapticBicycle(benchmark, Law.PAPER)
-        state = haptic.start()
-        for k in range(1, 41):
-            moments = course.disturbance(k * 1e-3)
-            state = haptic.step(state, k * 1e-3, 0.0, 0.0, 0.0, moments.roll, moments.steer)
-        assert state.roll_rate == pytest.approx(0.9 * 2.0 / 80.81722, rel=0.01)
+    def test_between_ticks_it_is_that_of_the_nearest(self, benchmark: Bicycle):
+        course = ScenarioCourse(_scenario(pushes=[PUSH], period=0.01), benchmark)
+        assert course.disturbance(1.104) == course.disturbance(1.1) != course.disturbance(1.11)
+
+    def test_the_seed_is_that_of_wind_and_phases(self, benchmark: Bicycle):
+        for one, of_seed in ((EACH_KIND[0], True), (EACH_KIND[2], True), (EACH_KIND[1], False)):
+            first, same, other = (
+                ScenarioCourse(_scenario(disturbances=[one], seed=seed), benchmark)
+                for seed in (1, 1, 2)
+            )
+            assert first.disturbance(0.7) == same.disturbance(0.7)
+            assert (first.disturbance(0.7) != other.disturbance(0.7)) == of_seed
+
+    def test_two_of_a_kind_are_not_the_same(self, benchmark: Bicycle):
+        one, two = (
+            ScenarioCourse(_scenario(disturbances=[EACH_KIND[2]] * n), benchmark) for n in (1, 2)
+        )
+        assert two.disturbance(0.7).roll != pytest.approx(2 * one.disturbance(0.7).roll)
+
+
+class TestBatch:
+    def test_each_has_what_it_has_alone(self, benchmark: Bicycle):
+        scenarios = [
+            _scenario(
+                seed=i,
+                speed=3.0 + 0.1 * i,
+                disturbances=EACH_KIND[: i % 5],
+                pushes=[{"time": 0.3 * i, "impulse": 5.0 - i}] * (i % 3),
+            )
+            for i in range(8)
+        ]
+        together = BatchCourse(scenarios, benchmark)
+        alone = [ScenarioCourse(one, benchmark) for one in scenarios]
+        for k in range(0, 3 * BLOCK, 7):
+            moments = together.disturbance(k * 1e-3)
+            assert [course.disturbance(k * 1e-3) for course in alone] == list(
+                zip(*(part.tolist() for part in moments), strict=True)
+            )
+
+    def test_different_speeds_are_the_same_array_at_all_times(self, benchmark: Bicycle):
+        together = BatchCourse([_scenario(speed=v) for v in (3, 4, 5)], benchmark)
+        assert together.speed(0.0).tolist() == [3, 4, 5]
+        assert together.speed(7.0) is together.speed(0.0)
+
+    def test_what_is_equal_for_all_is_a_float(self, benchmark: Bicycle):
+        together = BatchCourse([_scenario(seed=i, speed=4) for i in range(3)], benchmark)
+        assert together.speed(1.0) == 4.0
+        assert together.disturbance(1.0) == Moments(0.0, 0.0)
+
+    def test_a_speed_profile_is_one_for_all(self, benchmark: Bicycle):
+        profile = ((0.0, 3.0), (2.0, 5.0))
+        together = BatchCourse(
+            [_scenario(seed=i, speed_profile=profile) for i in range(3)], benchmark
+        )
+        assert [together.speed(t) for t in (0.0, 1.0, 3.0)] == [3, 4, 5]

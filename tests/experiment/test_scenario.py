@@ -1,4 +1,5 @@
 import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -89,3 +90,79 @@ def test_a_file_is_read_as_toml(tmp_path):
 def test_a_file_that_is_missing_is_named(tmp_path):
     with pytest.raises(InputError, match=r"scenario .*s\.toml: no such file or directory"):
         read_toml(tmp_path / "s.toml")
+
+
+class TestTasksAndCues:
+    @pytest.mark.parametrize(
+        "keys",
+        [
+            {"path": "circle", "haptics": {"switches": [[1, 0], [2, 1.5]], "limit": 3}},
+            {
+                "path": {
+                    "kind": "csv",
+                    "points": [[0, 0], [5, 0.1], [9.123456789, 1], [20, 3]],
+                }
+            },
+            {"vision": {"roll_cue": False, "preview": 2, "occlusions": [[1, 2], [3, 4.5]]}},
+            {"disturbances": [{"kind": "gust"}, {"kind": "steer-multisine", "stop": 4}]},
+            {"start": {"steer_deg": 3}, "speed_profile": [[0, 3], [9, 4]]},
+        ],
+    )
+    def test_as_toml_it_is_the_same_again(self, keys: dict[str, Any]):
+        scenario = _scenario(**keys)
+        assert Scenario(**tomllib.loads(to_toml(scenario))) == scenario
+
+    def test_pairs_of_numbers_take_a_line_each(self):
+        text = to_toml(_scenario(speed_profile=[[0, 3], [1e-5, 4]]))
+        assert "    [0.0, 3.0],\n    [1e-05, 4.0],\n" in text
+
+    def test_a_path_by_kind_or_by_file(self, tmp_path: Path):
+        (tmp_path / "track.csv").write_text("0,0\n5,0\n10,1\n20,1\n")
+        assert _scenario(path="slalom").path.amplitude == 1
+        path = _scenario(path=str(tmp_path / "track.csv")).path
+        assert (path.kind, path.points) == ("csv", ((0, 0), (5, 0), (10, 1), (20, 1)))
+
+    def test_it_needs_the_file_of_its_path_no_more(self, tmp_path: Path):
+        track = tmp_path / "track.csv"
+        track.write_text("0,0\n5,0\n10,1\n20,1\n")
+        scenario = _scenario(path=str(track))
+        track.unlink()
+        assert Scenario(**tomllib.loads(to_toml(scenario))) == scenario
+
+    @pytest.mark.parametrize(
+        "text", ['path = "track.csv"', '[path]\nfile = "track.csv"\nkind="csv"']
+    )
+    def test_a_file_is_sought_beside_the_scenario(self, tmp_path: Path, text: str):
+        (tmp_path / "track.csv").write_text("0,0\n5,0\n10,1\n20,1\n")
+        (tmp_path / "ride.toml").write_text(text)
+        path = _scenario(**read_toml(tmp_path / "ride.toml")).path
+        assert path.file == str(tmp_path / "track.csv")
+        assert path.points is not None
+        assert len(path.points) == 4
+
+    def test_where_there_is_none_it_is_sought_where_we_are(self, tmp_path: Path, monkeypatch):
+        (tmp_path / "sub").mkdir()
+        (tmp_path / "track.csv").write_text("0,0\n5,0\n10,1\n20,1\n")
+        (tmp_path / "sub" / "ride.toml").write_text('path = "track.csv"')
+        monkeypatch.chdir(tmp_path)
+        assert _scenario(**read_toml(tmp_path / "sub" / "ride.toml")).path.file == "track.csv"
+
+    @pytest.mark.parametrize(
+        ("keys", "told"),
+        [
+            ({"start": {"steer_deg": 60}}, "start.steer_deg = 60.0: must be within the rig's"),
+            ({"path": 3}, "path = 3: must be a name or a table"),
+            ({"haptics": {"delay": 0.0004}}, "haptics.delay = 0.0004 s: must be 0 or at least"),
+            ({"haptics": {"filter_cutoff": 5e3}}, "haptics.filter_cutoff = 5000.0 rad/s: must be"),
+            (
+                {"disturbances": [{"kind": "roll-multisine", "highest": 40}], "period": 0.1},
+                "disturbances.highest = 40.0 rad/s: must be below 31.4159 rad/s",
+            ),
+            ({"disturbances": [{}]}, "disturbances.kind: must be given"),
+            ({"disturbances": 3}, "disturbances = 3: must be a list"),
+        ],
+    )  # fmt: skip
+    def test_refused_in_one_line(self, keys: dict[str, Any], told: str):
+        with pytest.raises(InputError) as refused:
+            _scenario(**keys)
+        assert str(refused.value).startswith(told)

@@ -1,0 +1,150 @@
+"""Workers of a Dask cluster: one that is there already, or one of this machine."""
+
+import hashlib
+from contextlib import ExitStack, suppress
+from typing import TYPE_CHECKING, Any, Self
+
+from bikesim.errors import InputError
+from bikesim.experiment.study.crew import Answered, Event, Lost
+from bikesim.experiment.study.versions import Versions
+from bikesim.experiment.study.work import Answer, Order, work
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+_CONNECTING = 10.0  # [s]
+_TOPIC = "bikesim-progress"
+
+
+class DaskCrew:
+    """Orders go to the cluster's workers. Raises InputError for one that cannot be reached."""
+
+    def __init__(self, *, scheduler: str | None = None, workers: int = 1) -> None:
+        self._scheduler, self._count = scheduler, workers
+        self._open = ExitStack()
+        self._orders: dict[Future, Order] = {}
+        self._fractions: dict[Any, float] = {}
+
+    def __enter__(self) -> Self:
+        with ExitStack() as opening:
+            client: Any = self._connected(opening)
+            self._client = opening.enter_context(client)
+            self._check()
+            self._client.subscribe_topic(_TOPIC, self._hear)
+            self._open = opening.pop_all()
+        return self
+
+    def __exit__(self, *exception: Any) -> None:
+        # Its own tidying is loud where a worker has died.
+        with suppress(Exception):
+            self._client.cancel(list(self._orders))
+        self._orders.clear()
+        self._open.close()
+
+    @property
+    def workers(self) -> int:
+        threads: Any = self._client.nthreads()
+        return sum(threads.values())
+
+    @property
+    def free(self) -> int:
+        # One more for each, so that none waits for us.
+        return max(0, 2 * self.workers - len(self._orders))
+
+    @property
+    def busy(self) -> int:
+        return len(self._orders)
+
+    @property
+    def progress(self) -> float:
+        told = self._fractions
+        return sum(told.get(future.key, 0.0) * order.runs for future, order in self._orders.items())
+
+    def give(self, order: Order) -> None:
+        # Not pure: an order that was lost is given again.
+        self._orders[self._client.submit(_do, order, pure=False)] = order
+
+    def wait(self, seconds: float) -> list[Event]:
+        import time
+
+        from distributed import wait
+
+        if not self._orders:
+            time.sleep(seconds)
+            return []
+        try:
+            found: Any = wait(list(self._orders), timeout=seconds, return_when="FIRST_COMPLETED")
+        except TimeoutError:
+            return []
+        return [self._event(future) for future in found.done]
+
+    def stop(self) -> None:
+        """What is being ridden is given up."""
+        self._client.cancel(list(self._orders))
+        self._orders.clear()
+
+    def _event(self, future: "Future") -> Event:
+        order = self._orders.pop(future)
+        self._fractions.pop(future.key, None)
+        error = future.exception() if future.status == "error" else None
+        if future.status == "cancelled":
+            return Lost(order, "the scheduler")
+        if error is not None:
+            return Lost(order, " ".join(str(error).split()))
+        answer, worker = future.result()
+        return Answered(order, answer, worker)
+
+    def _hear(self, event: Any) -> None:
+        _, (key, fraction) = event
+        self._fractions[key] = fraction
+
+    def _connected(self, opening: ExitStack) -> "Client":
+        from dask.config import set as configured
+        from distributed import Client, LocalCluster
+
+        if self._scheduler is None:
+            # A worker that dies is told at once, as of our own. Set for as long as it is there.
+            opening.enter_context(configured({"distributed.scheduler.allowed-failures": 0}))
+            # No dashboard: its port would be another way into this machine.
+            cluster = LocalCluster(
+                n_workers=self._count,
+                threads_per_worker=1,
+                memory_limit=0,
+                dashboard_address=None,  # type: ignore[arg-type]
+                silence_logs=50,
+            )
+            return Client(opening.enter_context(cluster))
+        try:
+            return Client(self._scheduler, timeout=_CONNECTING)
+        except (OSError, ValueError) as error:
+            raise InputError(
+                f"--scheduler {self._scheduler}: no Dask scheduler answers: "
+                f"{' '.join(str(error).split())}"
+            ) from error
+
+    def _check(self) -> None:
+        """Each worker must have our versions: its results stand beside those of others."""
+        ours = Versions.gather()
+        theirs: Any = self._client.run(Versions.gather)
+        if not theirs:
+            raise InputError(f"--scheduler {self._scheduler}: has no workers yet")
+        for versions in theirs.values():
+            if versions != ours:
+                raise InputError(f"a Dask worker has {versions}, this is {ours}")
+
+
+def _do(order: Order) -> tuple[Answer, str]:
+    from distributed import get_worker
+
+    worker = get_worker()
+    key = worker.get_current_task()
+
+    def report(fraction: float) -> bool:
+        worker.log_event(_TOPIC, (key, fraction))
+        task = worker.state.tasks.get(key)
+        # Whoever asked for it has gone, or wants it no more.
+        return task is None or task.state == "cancelled"
+
+    # Not its address: a table of results should not name machines.
+    name = hashlib.sha256(worker.address.encode()).hexdigest()[:6]
+    return work(order, report), f"dask-{name}"

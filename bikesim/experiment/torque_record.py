@@ -1,0 +1,48 @@
+"""The torque of a recorded run, for a rider who gives it again."""
+
+from functools import lru_cache
+from pathlib import Path
+
+from bikesim.errors import InputError
+from bikesim.rider.settings import RiderSettings
+from bikesim.rider.torque_file import check_samples
+from bikesim.textfile import located, parse_toml
+
+_CHANNEL = "rider_torque"
+
+Samples = tuple[tuple[float, float], ...]
+
+
+def with_recorded_torque(settings: RiderSettings) -> RiderSettings:
+    """The same rider, with the torque of his record beside its name; others as they are.
+
+    The record is looked up here because riders know nothing of records. Raises InputError.
+    """
+    script = settings.script
+    if script is None or script.kind != "record" or script.samples:
+        return settings
+    file = Path(script.file or "")
+    with located(f"rider.script.file {file}"):
+        try:
+            status = file.stat()
+        except OSError as error:
+            raise InputError((error.strerror or str(error)).lower()) from None
+        samples = _samples(file, status.st_mtime_ns, status.st_size)
+    played = script.model_copy(update={"samples": samples})
+    return settings.model_copy(update={"script": played})
+
+
+# A file's time and size are asked for so that one that has changed is read again.
+@lru_cache(maxsize=4)
+def _samples(file: Path, changed: int, size: int) -> Samples:
+    from bikesim.record.reader import open_run
+
+    run = open_run(file)
+    if _CHANNEL not in run.names:
+        raise InputError(f"rig {run.rig} did not record {_CHANNEL}; a virtual rig does")
+    # A tick has the torque of the physics step before it.
+    step = parse_toml(run.scenario).get("physics_step", 0.0)
+    times, torques = (run.time - step).tolist(), run.channel(_CHANNEL).tolist()
+    samples = tuple(zip(times, torques, strict=True))[1:]
+    check_samples(samples)
+    return samples

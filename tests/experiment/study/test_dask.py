@@ -1,0 +1,65 @@
+"""The same experiment on a Dask cluster."""
+
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from bikesim.errors import InputError
+from bikesim.experiment.study.columns import PROVENANCE
+from bikesim.experiment.study.conduct import ride_batches
+from bikesim.experiment.study.crew import Answered, Crew
+from bikesim.experiment.study.dask_crew import DaskCrew
+from bikesim.experiment.study.folder import open_folder
+from bikesim.experiment.study.plan import Batch, RunId, Study
+from bikesim.experiment.study.results import read_results
+from bikesim.experiment.study.work import order_of
+
+from .crews import OwnHands
+
+
+def results(study: Study, path: Path, crew: Crew, size: int) -> pd.DataFrame:
+    with open_folder(path, study, force=False) as folder, crew:
+        batches = study.batches(folder.done, size, 2)
+        assert ride_batches(study, batches, folder, crew, lambda: False).whole
+        folder.merge()
+    return read_results(path).table
+
+
+def test_two_workers_compute_the_table_that_one_process_does(small, tmp_path: Path):
+    mine = results(small, tmp_path / "mine", OwnHands(), 512)
+    theirs = results(small, tmp_path / "theirs", DaskCrew(workers=2), 3)
+    by = set(theirs["worker"])
+    assert all(name.startswith("dask-") and len(name) == 11 for name in by)
+    columns = list(PROVENANCE)
+    pd.testing.assert_frame_equal(
+        mine.drop(columns=columns), theirs.drop(columns=columns), check_exact=True
+    )
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://x"])
+def test_a_scheduler_that_is_not_there_is_told(address: str, monkeypatch):
+    monkeypatch.setattr("bikesim.experiment.study.dask_crew._CONNECTING", 0.5)
+    with pytest.raises(InputError) as raised, DaskCrew(scheduler=address):
+        pass
+    assert str(raised.value).startswith(f"--scheduler {address}: no Dask scheduler answers: ")
+    assert "\n" not in str(raised.value)
+
+
+def test_how_far_it_is_can_be_seen_and_it_can_be_stopped(make):
+    study = make("seeds = 2\nscenario.duration = 3600.0")
+    with DaskCrew(workers=1) as crew:
+        crew.give(order_of(study, next(study.batches(set(), 512, 1))))
+        deadline = time.monotonic() + 60
+        while not crew.progress:
+            assert crew.wait(0.1) == []
+            assert time.monotonic() < deadline
+        assert 0 < crew.progress < 2
+        crew.stop()
+        assert crew.busy == 0
+        # Its worker is free again, long before the hour is over.
+        crew.give(order_of(make("seeds = 1\nscenario.duration = 0.1"), Batch(1, (RunId(1, 1),))))
+        while not (events := crew.wait(1.0)):
+            assert time.monotonic() < deadline
+        assert isinstance(events[0], Answered)
