@@ -47,7 +47,7 @@ def _bare_loop() -> float:
     measured, control = data.sensordata, data.ctrl
     began = time.perf_counter()
     for _ in range(_SCENARIO.ticks):
-        angle, rate = measured[0], measured[3]
+        angle, rate = measured[0], measured[1]
         control[0] = -2.0 * angle - 0.5 * rate
         for _ in range(substeps):
             mujoco.mj_step(model, data)

@@ -1,0 +1,1 @@
+"""Statistics and the page of an experiment of many runs."""

@@ -1,0 +1,53 @@
+"""How long riders stay up: the Kaplan-Meier estimate, runs that stayed up censored."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bikesim.report.experiment.rates import CONFIDENCE, normal_quantile
+
+Reals = NDArray[np.floating[Any]]
+
+
+class Survival(NamedTuple):
+    """S(t), the share still up just after each `time` [s] of a fall, (n,), with its band.
+
+    `at_risk` and `falls` at each. Before the first time S is 1. `last` [s] is the longest ride.
+    `median` [s] is the first time with S ≤ 0.5, NaN if there is none.
+    """
+
+    time: Reals
+    share: Reals
+    low: Reals
+    high: Reals
+    at_risk: NDArray[np.int64]
+    falls: NDArray[np.int64]
+    last: float
+    median: float
+
+
+def kaplan_meier(
+    duration: Reals, fell: NDArray[np.bool_], confidence: float = CONFIDENCE
+) -> Survival:
+    """The product-limit estimate of rides (m,) of a duration [s] that ended in a fall or not.
+
+    Band: Greenwood's variance of log(-log S), point by point [Kaplan & Meier 1958; Kalbfleisch &
+    Prentice 2002, sec. 1.4]. Where S is 0 there is none.
+    """
+    time, falls = np.unique(duration[fell], return_counts=True)
+    at_risk = len(duration) - np.searchsorted(np.sort(duration), time, side="left")
+    share = np.cumprod(1 - falls / at_risk)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        greenwood = np.cumsum(falls / (at_risk * (at_risk - falls)))
+        theta = normal_quantile(confidence) * np.sqrt(greenwood) / np.abs(np.log(share))
+        low, high = share ** np.exp(theta), share ** np.exp(-theta)
+    none = share <= 0
+    low[none], high[none] = np.nan, np.nan
+    reached = time[share <= 0.5 + 1e-12]
+    return Survival(
+        time, share, low, high, at_risk, falls,
+        last=float(duration.max()) if len(duration) else math.nan,
+        median=float(reached[0]) if len(reached) else math.nan,
+    )  # fmt: skip

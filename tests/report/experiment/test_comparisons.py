@@ -1,0 +1,48 @@
+import pytest
+
+from bikesim.report.experiment.comparisons import MOST, Asked, comparisons
+from bikesim.report.experiment.data import Condition, Data, Factor
+
+
+def test_unasked_each_level_against_the_first_all_else_equal(data: Data):
+    """6 of the law, 6 of the roll cue, 2 speeds x 4 of the others."""
+    names = [one.name for one in data.comparisons]
+    assert len(names) == 6 + 6 + 8
+    assert names[0] == "law off against paper, where roll cue on, speed 2.5 m/s"
+    assert names[6] == "roll cue off against on, where law paper, speed 2.5 m/s"
+    assert names[-1] == "speed 7 against 2.5 m/s, where law off, roll cue off"
+
+
+def test_the_second_is_what_is_named_first(data: Data):
+    first = data.comparisons[0]
+    assert first.first == "law=paper, roll cue=on, speed=2.5"
+    assert first.second == "law=off, roll cue=on, speed=2.5"
+
+
+def test_what_is_asked_is_all_that_is_made(data: Data):
+    made = comparisons([Asked("speed", 7.0, 5.0)], data.factors, data.conditions)
+    assert made[0].name == "speed 5 against 7 m/s, where law paper, roll cue on"
+    assert len(made) == 4
+
+
+def test_no_more_than_the_most_unasked():
+    """The first factor's are made however many they are; another's only if they all fit."""
+    many, few = Factor("a", "a", "", tuple(range(30))), Factor("b", "b", "", tuple(range(3)))
+    grid = [Condition(f"{i} {j}", (i, j)) for i in range(30) for j in range(3)]
+    turned = [Condition(one.name, one.levels[::-1]) for one in grid]
+    assert len(comparisons((), (many, few), grid)) == 29 * 3 > MOST
+    assert len(comparisons((), (few, many), turned)) == 2 * 30
+    assert MOST < 2 * 30 + 29 * 3
+
+
+def test_a_condition_that_is_not_there_is_not_compared(data: Data):
+    made = comparisons((), data.factors, data.conditions[1:])
+    assert all(one.first != data.conditions[0].name for one in made)
+    assert len(made) == 20 - 4
+
+
+@pytest.mark.parametrize("level", [None, "momentum"])
+def test_an_extra_condition_is_compared_with_none(data: Data, level):
+    extra = Condition("extra", (level, True, 2.5))
+    made = comparisons((), data.factors, (*data.conditions, extra))
+    assert made == data.comparisons

@@ -1,0 +1,113 @@
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from bikesim.report.experiment.data import Data
+from bikesim.report.experiment.findings import find
+
+
+def test_a_condition(data: Data):
+    found = find(data)
+    fallen, up = found.conditions[6], found.conditions[0]
+    assert fallen.condition.levels == ("off", True, 2.5)
+    assert (fallen.falls.events, fallen.falls.runs) == (12, 12)
+    assert fallen.survival.median == pytest.approx(2.6)
+    assert (up.falls.events, math.isnan(up.survival.median)) == (0, True)
+
+
+def test_metrics_are_of_the_runs_that_stayed_up(data: Data):
+    fallen = find(data).conditions[6]
+    fall_time, roll, _ = fallen.metrics
+    assert (fall_time.runs, fall_time.median) == (12, pytest.approx(2.65))
+    assert (roll.runs, math.isnan(roll.median)) == (0, True)
+
+
+def test_the_interval_of_a_median_is_between_the_third_and_the_tenth_of_twelve(data: Data):
+    """Tables of the sign test: with 12 values the 3rd and 10th hold it in 96.1 % of cases."""
+    values = np.sort(data.values(data.conditions[0].name, "roll_rms"))
+    roll = find(data).conditions[0].metrics[1]
+    assert (roll.low, roll.high) == (values[2], values[9])
+    assert roll.median == pytest.approx(np.median(values))
+
+
+def test_a_fault_is_no_fall_and_has_no_metrics(data: Data):
+    table = data.table.copy()
+    table.loc[0, "ending"] = "fault: feedback torque is nan"
+    found = find(dataclasses.replace(data, table=table)).conditions[0]
+    assert (found.faults, found.falls.events, found.metrics[1].runs) == (1, 0, 11)
+
+
+def test_contrasts_pair_the_seeds(data: Data):
+    found = find(data)
+    law, cue = found.contrasts[0], found.contrasts[6]
+    assert (law.falls.first, law.falls.second, law.falls.difference) == (0, 12, 1.0)
+    assert law.metrics[0].difference.pairs == 0
+    first, second = (data.values(name, "roll_rms") for name in cue.comparison[1:])
+    roll = cue.metrics[0]
+    assert roll.metric == "roll_rms"
+    assert roll.difference.p_wilcoxon == pytest.approx(stats.wilcoxon(second, first).pvalue)
+    assert roll.difference.mean == pytest.approx(float(np.mean(second - first)))
+
+
+def test_pairs_go_by_seed_not_by_row(data: Data):
+    shuffled = data.table.sample(frac=1.0, random_state=1)
+    again = find(dataclasses.replace(data, table=shuffled))
+    assert again.contrasts[6] == find(data).contrasts[6]
+
+
+def test_a_seed_that_one_condition_lacks_is_no_pair(data: Data):
+    found = find(dataclasses.replace(data, table=data.table.iloc[1:]))
+    assert sum(found.contrasts[0].falls[:4]) == 11
+
+
+def test_p_is_corrected_for_all_tests_that_were_made(data: Data):
+    found = find(data)
+    made = [one.falls.p for one in found.contrasts]
+    made += [m.difference.p_wilcoxon for one in found.contrasts for m in one.metrics]
+    assert found.tests == sum(not math.isnan(p) for p in made)
+    smallest = min(p for p in made if not math.isnan(p))
+    corrected = min(one.falls_p_holm for one in found.contrasts)
+    assert corrected == pytest.approx(min(1.0, found.tests * smallest))
+
+
+def test_the_regression_says_that_falls_are_separated(data: Data):
+    found = find(data).regression
+    assert found.model is not None
+    assert found.model.separated
+    assert [term.name for term in found.model.terms] == [
+        "constant", "law off", "roll cue off", "speed 5 m/s", "speed 7 m/s",
+    ]  # fmt: skip
+    by_name = {term.name: term for term in found.model.terms}
+    assert by_name["law off"].low > 0
+    assert by_name["roll cue off"].low < 0 < by_name["roll cue off"].high
+    assert found.reference == (("law", "paper"), ("roll cue", "on"), ("speed", "2.5"))
+
+
+def test_no_regression_where_nobody_fell(data: Data):
+    table = data.table.assign(fell=0.0, ending="end of run")
+    found = find(dataclasses.replace(data, table=table)).regression
+    assert found.model is None
+    assert found.none_because == "no run fell, so no factor makes a difference"
+
+
+def test_a_column_that_follows_from_others_is_left_out(data: Data):
+    """The same levels under two names."""
+    again = data.factors[0]._replace(name="haptics", label="haptics")
+    table = data.table.assign(haptics=data.table["law"])
+    found = find(
+        dataclasses.replace(data, table=table, factors=(*data.factors, again), comparisons=())
+    ).regression
+    assert found.left_out == ("haptics off",)
+
+
+def test_main_effects_that_do_not_fit_are_found(data: Data):
+    """All fall where exactly one of law and roll cue is off."""
+    table = data.table
+    odd = (table["law"] == "off") ^ ~table["vision.roll_cue"]
+    noise = table["seed"] == 3  # so that nothing is separated
+    found = find(dataclasses.replace(data, table=table.assign(fell=(odd ^ noise).astype(float))))
+    assert found.regression.fit is not None
+    assert found.regression.fit.p < 1e-6
