@@ -7,12 +7,14 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bikesim.model.bicycle import Bicycle
 from bikesim.model.eigen import Modes, bicycle_modes, eigenvalues, simulator_modes
 from bikesim.model.law import Law
 from bikesim.model.sampled_loop import (
     RELEASED,
+    Complexes,
     Controller,
     Grip,
     SampledLoop,
@@ -78,8 +80,6 @@ def margin_at(
         key=lambda found: found[0],
     )
     limit, frequency = critical_delay(bicycle, law, speed, loop)
-    should = bicycle_modes(bicycle, speed)
-    is_ = simulator_modes(bicycle, law, speed, loop.felt_inertia)
     return Margin(
         speed,
         worst[0],
@@ -87,19 +87,25 @@ def margin_at(
         worst[1],
         limit - loop.delay,
         frequency,
-        _distance(sampled_modes(control, loop), should),
-        _distance(np.array(is_.all()), should),
+        _distance(sampled_modes(control, loop), bicycle_modes(bicycle, speed)),
+        inertia_error(bicycle, law, speed, loop.felt_inertia),
     )
 
 
-def sampled_modes(control: Controller, loop: SampledLoop, grip: Grip = RELEASED) -> np.ndarray:
+def inertia_error(bicycle: Bicycle, law: Law, speed: float, inertia: float) -> float:
+    """By how much a handlebar of `inertia` [kg m²] puts weave or capsize of the simulator, hands
+    off in continuous time, off the bicycle's own [1/s].
+    """
+    found = simulator_modes(bicycle, law, speed, inertia)
+    return _distance(np.array(found.all()), bicycle_modes(bicycle, speed))
+
+
+def sampled_modes(control: Controller, loop: SampledLoop, grip: Grip = RELEASED) -> Complexes:
     """Equivalent continuous eigenvalues s = ln(z)/T [1/s], least stable first; none for z = 0."""
     return next(_sampled(control, loop, [grip]))
 
 
-def _sampled(
-    control: Controller, loop: SampledLoop, grips: Sequence[Grip]
-) -> Iterator[np.ndarray]:
+def _sampled(control: Controller, loop: SampledLoop, grips: Sequence[Grip]) -> Iterator[Complexes]:
     matrices = np.array([loop_matrix(control, loop, grip) for grip in grips])
     for z in np.linalg.eigvals(matrices).astype(complex):
         s = np.log(z[np.abs(z) > 1e-6]) / (loop.period * loop.ticks_per_sample)
@@ -108,7 +114,7 @@ def _sampled(
 
 def continuous_modes(
     bicycle: Bicycle, law: Law, speed: float, loop: SampledLoop, grip: Grip = RELEASED
-) -> np.ndarray:
+) -> Complexes:
     """The four [1/s] of the same loop in continuous time, without delay, lag, filter or coupling's
     give; least stable first.
     """
@@ -116,11 +122,11 @@ def continuous_modes(
     mass, damping, stiffness = simulator_matrices(bicycle, law, speed, inertia)
     arms = np.array([[0.0, 0.0], [0.0, 1.0]])
     damping = damping + (loop.viscous_friction + grip.damping) * arms
-    s = eigenvalues(mass, damping, stiffness + grip.stiffness * arms)
-    return s[np.argsort(-s.real)]
+    s = np.asarray(eigenvalues(mass, damping, stiffness + grip.stiffness * arms), complex)
+    return s[np.argsort(-np.real(s))]
 
 
-def _excess(sampled: np.ndarray, continuous: np.ndarray) -> tuple[float, complex]:
+def _excess(sampled: Complexes, continuous: Complexes) -> tuple[float, complex]:
     """Of the least stable mode over the continuous one; of each further one, where it is unstable.
 
     Without the second part a mode that becomes unstable would hide behind a faster fall.
@@ -166,7 +172,7 @@ def critical_delay(
 
 def _falling_through_one(
     control: Controller, loop: SampledLoop
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[NDArray[np.float64], Complexes]:
     """The ω [rad/s] where |L| falls through 1, and L there."""
     last = math.pi / (loop.period * loop.ticks_per_sample)
     grid = np.geomspace(1e-2, last * (1 - 1e-9), _GRID)
@@ -180,10 +186,10 @@ def _falling_through_one(
     return high, loop_response(control, loop, high)
 
 
-def _unstable(modes: np.ndarray) -> int:
+def _unstable(modes: Complexes) -> int:
     return int(np.sum(modes.real > 1e-6))
 
 
-def _distance(found: np.ndarray, should: Modes) -> float:
+def _distance(found: Complexes, should: Modes) -> float:
     """Of weave and capsize from the nearest that there is [1/s], the larger of both."""
     return max(float(np.abs(found - mode).min()) for mode in (should.weave[0], should.capsize))

@@ -119,9 +119,8 @@ def _behind_filter(law: Controller, loop: SampledLoop) -> Controller:
     C_f, D_f = np.kron(two, F.C), np.kron(two, F.D)
     n, m = len(law.A), len(A_f)
     A = np.block([[law.A, law.B @ C_f], [np.zeros((m, n)), A_f]])
-    return Controller(
-        A, np.vstack([law.B @ D_f, B_f]), np.hstack([law.C, law.D @ C_f]), law.D @ D_f
-    )
+    B = np.asarray(np.vstack([law.B @ D_f, B_f]), float)
+    return Controller(A, B, np.hstack([law.C, law.D @ C_f]), law.D @ D_f)
 
 
 def _filter(loop: SampledLoop) -> Controller:
@@ -136,13 +135,19 @@ def _filter(loop: SampledLoop) -> Controller:
             f"sampling frequency at a period of {loop.period} s"
         )
     zeros, poles, gain = butter(loop.filter_order, loop.filter_cutoff / nyquist, output="zpk")
-    return Controller(*zpk2ss(zeros, poles, gain))
+    A, B, C, D = (np.array(one, float) for one in zpk2ss(zeros, poles, gain))
+    return Controller(A, B, C, D)
+
+
+# Of a period: rounding is no part of one.
+_WHOLE = 1e-9
 
 
 def loop_matrix(control: Controller, loop: SampledLoop, grip: Grip = RELEASED) -> Matrix:
     """One sensor interval of the loop: bar, controller, the sample held, torques under way."""
-    bar, split = _Bar(loop, grip), divmod(loop.delay / loop.period + 1e-9, 1.0)
-    whole, part = int(split[0]), max(0.0, split[1] - 1e-9) * loop.period
+    bar, periods = _Bar(loop, grip), loop.delay / loop.period
+    whole = int(periods + _WHOLE)
+    part = (periods - whole) * loop.period if periods - whole > _WHOLE else 0.0
     nb, nc, held = len(bar.generator) - 1, len(control.A), 2 if loop.ticks_per_sample > 1 else 0
     size = nb + nc + held + whole + (2 if part > 0 else 1)
     queue = nb + nc + held
@@ -212,4 +217,4 @@ def loop_response(control: Controller, loop: SampledLoop, frequencies: np.ndarra
     n = loop.ticks_per_sample
     w = frequencies * loop.period
     held = np.exp(-0.5j * w * (n - 1)) * np.sinc(n * w / (2 * np.pi)) / np.sinc(w / (2 * np.pi))
-    return -answer * held
+    return np.asarray(-answer * held, complex)

@@ -1,0 +1,196 @@
+"""The bench loop against an emulated bench in another process, over udp_multicast.
+
+Targets: compute time of a tick at 1 kHz, median at most 50 µs and p99 at most 100 µs; lateness
+p99.9 at most 1.2 times that of a bare loop under the same scheduling; no tick lost and no false
+fault in the soak, memory flat; after kill -9 of the host the drive's torque is zero within 50 ms;
+the first 2 s of a recording, sent as sensor frames, give the recorded torque within 0.05 N m.
+`python -m benchmarks.bench --minutes 10` soaks longer (default: 1 for each drive).
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import tomli_w
+
+from bikesim import bicycles
+from bikesim.bench.emulator import Emulator, emulated_bus
+from bikesim.bench.plant import Plant
+from bikesim.bench.profile import load_bench
+from bikesim.bench.recorded import torque_on_the_wire
+from bikesim.bench.report import percentiles, timing_report
+from bikesim.bench.scenario import bench_scenario
+from bikesim.clock import RealTimeClock
+from bikesim.experiment.scenario import Scenario
+from bikesim.realtime import PRIORITY, real_time
+from bikesim.record.reader import open_run
+from bikesim.record.recording import read_recording
+
+_RECORDING = Path(__file__).parents[2] / "shared" / "recordings" / "phobos_5mps.csv.gz"
+_DRIVES = ("cia402-emulated", "odrive-emulated")
+
+
+def main(arguments: Sequence[str] = ()) -> None:
+    """All of them, in turn."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=1.0, help="of each soak")
+    options = parser.parse_args(arguments)
+    with tempfile.TemporaryDirectory() as folder:
+        for name in _DRIVES:
+            _soak(name, Path(folder), options.minutes)
+        for name in _DRIVES:
+            _kill(name, Path(folder))
+    _replayed()
+
+
+def _profile(name: str, folder: Path) -> Path:
+    """One that ships, where nobody else is: on a port of this process's own."""
+    settings = load_bench(name)
+    bus = settings.bus.model_copy(update={"arguments": {"port": 30_000 + os.getpid() % 10_000}})
+    changed = settings.model_copy(update={"bus": bus})
+    path = folder / f"{name}.toml"
+    path.write_text(tomli_w.dumps(changed.model_dump(mode="json", exclude_none=True)))
+    return path
+
+
+def _bikesim(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "bikesim", "bench", *map(str, arguments)]
+
+
+def _soak(name: str, folder: Path, minutes: float) -> None:
+    """A ride against the emulator in a process of its own; what was late, lost and grew."""
+    profile, record = _profile(name, folder), folder / f"{name}.h5"
+    seconds = 60 * minutes
+    with subprocess.Popen(
+        _bikesim("emulate", profile, "--duration", seconds + 120), stdout=subprocess.PIPE, text=True
+    ) as bench:
+        try:
+            _wait_for(bench)
+            with subprocess.Popen(
+                _bikesim("run", profile, "--duration", seconds, "-o", record, "--json"),
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+            ) as ride:
+                sizes = _sizes(ride)
+                out, err = ride.communicate()
+        finally:
+            bench.terminate()
+    if not out:
+        print(f"  {name}: not ridden: {err.strip().splitlines()[-1]}")
+        return
+    said, run = json.loads(out), open_run(record)
+    timing = timing_report(run)
+    late, compute = percentiles(timing.late), percentiles(timing.compute)
+    bare = percentiles(_bare(min(seconds, 30.0), run.period))
+    print(f"  {name}: {said['reason']}; {said['ticks']} ticks, {timing.skipped} left out")
+    print(f"    compute  p50 {compute['p50']:.0f}, p99 {compute['p99']:.0f} µs (50, 100)")
+    ratio = late["p99.9"] / bare["p99.9"]
+    print(
+        f"    late     p99.9 {late['p99.9']:.0f} µs, of a bare loop {bare['p99.9']:.0f}: "
+        f"{ratio:.2f} x (1.2)"
+    )
+    print(f"    frames   {run.channel('frames_lost')[-1]:.0f} of the sensor lost")
+    if len(sizes) > 4:
+        early = sizes[len(sizes) // 4]
+        print(f"    memory   {early:.1f} MB after a quarter, {sizes[-1]:.1f} at the end")
+
+
+def _wait_for(bench: subprocess.Popen[str]) -> None:
+    assert bench.stdout is not None
+    for line in bench.stdout:
+        if "Ctrl-C" in line:
+            return
+
+
+def _sizes(process: subprocess.Popen[str]) -> list[float]:
+    """Resident memory each second, until it ends [MB]."""
+    sizes: list[float] = []
+    while process.poll() is None:
+        try:
+            pages = int(Path(f"/proc/{process.pid}/statm").read_text().split()[1])
+        except (OSError, IndexError):
+            break
+        sizes.append(pages * os.sysconf("SC_PAGE_SIZE") / 1e6)
+        time.sleep(1.0)
+    return sizes
+
+
+def _bare(seconds: float, period: float) -> np.ndarray:
+    """Lateness [s] of a loop that only waits, under the same scheduling."""
+    with real_time():
+        clock = RealTimeClock(period)
+        late = []
+        for _ in range(round(seconds / period)):
+            wake = clock.wait()
+            late.append(wake.late + wake.skipped * period)
+    return np.array(late)
+
+
+def _kill(name: str, folder: Path) -> None:
+    """kill -9 of the host in the middle of a ride; the emulated bench is in this process."""
+    path = _profile(name, folder)
+    settings = load_bench(str(path))
+    scenario = bench_scenario(settings, Scenario())
+    torques: list[tuple[float, float]] = []
+
+    def watch(now: float, plant: Plant) -> None:
+        torques.append((now, plant.torque))
+
+    took = []
+    for _ in range(3):
+        torques.clear()
+        command = _bikesim("run", path, "--duration", 60, "-o", folder / "killed.h5", "--force",
+                           "--set", "start.roll_deg=1")  # fmt: skip
+        with (
+            emulated_bus(settings) as bus,
+            subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as host,
+            real_time(PRIORITY - 5),
+        ):
+            emulator = Emulator(bus, settings, scenario, watch=watch)
+            killed = _killed(emulator, host)
+            if killed is None:
+                continue
+            last = max((now for now, torque in torques if torque), default=killed)
+            took.append(1e3 * (last - killed))
+    told = ", ".join(f"{one:.0f}" for one in took) or "never ridden"
+    print(f"  {name}: torque after kill -9 of the host until {told} ms (50)")
+
+
+def _killed(emulator: Emulator, host: subprocess.Popen[bytes]) -> float | None:
+    """When it was killed, 2 s into its ride; None if it never rode."""
+    at: list[float] = []
+
+    def over() -> bool:
+        now, since = time.monotonic(), emulator.riding_since
+        if not at and since is not None and now - since > 2.0:
+            host.kill()
+            at.append(now)
+        return (bool(at) and now - at[0] > 0.3) or (not at and host.poll() is not None)
+
+    emulator.run(over)
+    return at[0] if at else None
+
+
+def _replayed() -> None:
+    """The recording's steer as sensor frames on a bus; the drive's frames against its command."""
+    if not _RECORDING.exists():
+        print("  no recording: ../shared is not there")
+        return
+    bicycle = bicycles.load("benchmark").with_gravity(9.80665)
+    found = torque_on_the_wire(read_recording(_RECORDING), bicycle, 2.0)
+    print(
+        f"  {_RECORDING.name}, {found.ticks} ticks: torque on the wire at most {found.error:.3f} "
+        f"N m from the recorded command of up to {found.largest:.2f} N m (0.05)"
+    )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

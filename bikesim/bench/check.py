@@ -1,0 +1,232 @@
+"""Who answers on a bench's bus, and how well."""
+
+import re
+import time
+from collections import defaultdict
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from bikesim.bench.bus import BusPort, filter_for, open_bus
+from bikesim.bench.continuity import BadFrame, Flaw
+from bikesim.bench.database import STEER_STATE, WHEEL_SPEED, cycle_time, message
+from bikesim.bench.drive import Drive
+from bikesim.bench.drives import make_drive
+from bikesim.bench.frame import from_message
+from bikesim.bench.preflight import checked_load
+from bikesim.bench.profile import BenchSettings, bench_path
+from bikesim.bench.ride import Parts, wanted_ids
+from bikesim.bench.sensor_node import SteerDecoder, SteerReading
+from bikesim.bench.wheel_node import WheelDecoder, WheelReading
+from bikesim.clock import RealTimeClock
+from bikesim.errors import InputError
+from bikesim.realtime import real_time
+
+if TYPE_CHECKING:
+    import can
+
+_LISTEN = 1.0  # s
+_RATE_WITHIN = 0.05
+_CLOCK_WITHIN = 1e-3
+
+
+class Finding(NamedTuple):
+    """A line of the table."""
+
+    good: bool
+    what: str
+    found: str
+    wanted: str
+
+
+def check(bench: BenchSettings, *, pulse: bool = False) -> list[Finding]:
+    """Listens, then sets the drive up and leaves it disabled. Raises InputError without a bus.
+
+    `pulse`: then also arms it and sends the commissioning pulse.
+    """
+    drive = make_drive(bench.drive)
+    load = checked_load(bench, drive)
+    findings = [Finding(True, "bus load, at worst", f"{100 * load:.0f} %", "at most 90 %")]
+    heard = _Heard(bench, drive)
+    bus = open_bus(bench.bus)
+    try:
+        heard.listen(bus)
+        findings += heard.findings()
+        if all(one.good for one in findings):
+            findings += _of_drive(bus, bench, drive, pulse=pulse)
+    finally:
+        bus.shutdown()
+    return findings
+
+
+class _Heard:
+    """What came in a second of listening, nothing being sent."""
+
+    def __init__(self, bench: BenchSettings, drive: Drive) -> None:
+        self._bench, self._drive = bench, drive
+        self._steer = SteerDecoder()
+        self._wheel = None if bench.wheel is None else WheelDecoder(bench.wheel)
+        self._counts: dict[int, int] = defaultdict(int)
+        self._flaws: dict[int, list[Flaw]] = defaultdict(list)
+        self._lost: dict[int, int] = defaultdict(int)
+        self._gaps: dict[int, float] = defaultdict(float)
+        self._last: dict[int, float] = {}
+        self._times: dict[int, list[tuple[float, float]]] = defaultdict(list)
+        self._newest: SteerReading | None = None
+        self._newest_wheel: WheelReading | None = None
+        self._errors = 0
+
+    def listen(self, bus: "can.BusABC") -> None:
+        began = time.monotonic()
+        while (left := began + _LISTEN - time.monotonic()) > 0:
+            came = bus.recv(left)
+            if came is None:
+                return
+            now = time.monotonic()
+            self._errors += came.is_error_frame
+            frame = from_message(came)
+            if frame is not None:
+                self._take(frame.id, frame.data, now)
+
+    def _take(self, identifier: int, data: bytes, now: float) -> None:
+        self._counts[identifier] += 1
+        if identifier in self._last:
+            gap = now - self._last[identifier]
+            self._gaps[identifier] = max(self._gaps[identifier], gap)
+        self._last[identifier] = now
+        if identifier == self._steer.id:
+            reading = self._steer.decode(data, now)
+            self._keep(identifier, reading, now)
+            self._newest = reading if isinstance(reading, SteerReading) else self._newest
+        elif self._wheel is not None and identifier == self._wheel.id:
+            reading = self._wheel.decode(data, now)
+            self._keep(identifier, reading, now)
+            if isinstance(reading, WheelReading):
+                self._newest_wheel = reading
+
+    def _keep(self, one: int, reading: SteerReading | WheelReading | BadFrame, now: float) -> None:
+        if isinstance(reading, BadFrame):
+            self._flaws[one].append(reading.flaw)
+            return
+        self._lost[one] += reading.lost
+        self._times[one].append((now, reading.time))
+
+    def findings(self) -> list[Finding]:
+        masters = [f"{one:#05x}" for one in self._drive.host_ids if self._counts[one]]
+        findings = [
+            Finding(not self._errors, "error frames", str(self._errors), "0"),
+            Finding(not masters, "another host", ", ".join(masters) or "none", "none"),
+        ]
+        if self._bench.bar.source == "node":
+            findings += self._sensor("sensor node", STEER_STATE)
+            findings += self._steer_findings()
+        if self._wheel is not None:
+            findings += self._sensor("speed sensor", WHEEL_SPEED)
+            wheel = self._newest_wheel
+            ok = wheel is not None and wheel.sensor_ok
+            speed = "nothing" if wheel is None else f"{wheel.speed:.2f} m/s"
+            findings.append(Finding(ok, "speed sensor says", speed, "sensor_ok"))
+        return findings
+
+    def _sensor(self, name: str, what: str) -> Iterable[Finding]:
+        one, period = message(what).frame_id, cycle_time(message(what))
+        rate, should = self._counts[one] / _LISTEN, 1 / period
+        yield Finding(
+            abs(rate / should - 1) <= _RATE_WITHIN,
+            f"{name}: frames of {one:#05x}",
+            f"{rate:.0f} a second",
+            f"{should:.0f}",
+        )
+        if not self._counts[one]:
+            return
+        bad = len(self._flaws[one])
+        crc = self._flaws[one].count(Flaw.CRC)
+        flaws = f"{crc} with a wrong checksum, {bad - crc} others"
+        yield Finding(bad == 0, f"{name}: bad frames", flaws, "none")
+        lost = self._lost[one]
+        yield Finding(lost <= 0.01 * should, f"{name}: lost", str(lost), "less than 1 %")
+        oldest = self._bench.thresholds.ramp_age if what == STEER_STATE else 0.1
+        gap = self._gaps[one]
+        yield Finding(
+            gap <= oldest, f"{name}: longest pause", f"{1e3 * gap:.1f} ms", f"{1e3 * oldest:g} ms"
+        )
+        yield self._clock(name, one)
+
+    def _clock(self, name: str, one: int) -> Finding:
+        times = self._times[one]
+        ratio = 0.0
+        if len(times) > 1:
+            (a, b), (c, d) = times[0], times[-1]
+            ratio = (d - b) / (c - a) if c > a else 0.0
+        # Two arrivals, each up to a pause late, are all that the host has to compare with.
+        within = _CLOCK_WITHIN + 2 * self._gaps[one] / _LISTEN
+        good = abs(ratio - 1) <= within
+        return Finding(good, f"{name}: its clock", f"{ratio:.4f} of ours", f"1 ± {within:.3f}")
+
+    def _steer_findings(self) -> Iterable[Finding]:
+        seen = self._newest
+        if seen is None:
+            return
+        for name, good in (
+            ("potentiometer", seen.pot_ok),
+            ("gyro", seen.gyro_ok),
+            ("reference voltage", seen.vref_ok),
+        ):
+            yield Finding(good, f"sensor node: {name}", "ok" if good else "out of range", "ok")
+        estop = "closed" if seen.estop_closed else "open"
+        yield Finding(seen.estop_closed, "emergency stop", estop, "closed")
+        still = abs(seen.steer_rate) < 0.05
+        found = f"{seen.steer:+.4f} rad, {seen.steer_rate:+.4f} rad/s"
+        yield Finding(still, "bar", found, "at rest")
+
+
+def _of_drive(
+    bus: "can.BusABC", bench: BenchSettings, drive: Drive, *, pulse: bool
+) -> Iterable[Finding]:
+    filter_for(bus, drive.ids)
+    try:
+        lines = drive.set_up(bus)
+    except InputError as error:
+        return [Finding(False, "drive", str(error), "as in the profile")]
+    filter_for(bus, None)
+    # What it does not have, it need not have.
+    findings = [Finding(True, "drive", line, "as in the profile") for line in lines]
+    if not pulse:
+        return findings
+    with real_time():
+        parts = Parts(
+            bench, drive, BusPort(bus, wanted_ids(bench, drive)), RealTimeClock(bench.period)
+        )
+        try:
+            parts.arm()
+            findings.append(Finding(True, "commissioning pulse", parts.pulse(), "within 30 %"))
+        except InputError as error:
+            findings.append(Finding(False, "commissioning pulse", str(error), "within 30 %"))
+        finally:
+            parts.rig.close()
+    disabled = parts.rig.disabled is True
+    said = "disabled" if disabled else "it did not say that it is disabled"
+    findings.append(Finding(disabled, "drive, at the end", said, "disabled"))
+    return findings
+
+
+def remember(name: str, bench: BenchSettings) -> str:
+    """Writes into the profile that it passed the pulse; says so, or what a person is to write."""
+    path, line = bench_path(name), f'commissioned = "{bench.commissioning}"'
+    try:
+        if bench.commissioned != bench.commissioning:
+            path.write_text(with_line(path, line), encoding="utf-8")
+    except OSError:
+        return f"passed; write into the profile: {line}"
+    return f"passed; in {path}: {line}"
+
+
+def with_line(path: Path, line: str) -> str:
+    """The profile's text with its `commissioned` replaced, or put before the first key."""
+    text = path.read_text(encoding="utf-8")
+    changed, times = re.subn(r"^commissioned\s*=.*$", line, text, count=1, flags=re.MULTILINE)
+    if times:
+        return changed
+    first = re.search(r"^\s*[\w\[\"]", text, flags=re.MULTILINE)
+    at = first.start() if first else len(text)
+    return f"{text[:at]}{line}\n{text[at:]}"

@@ -1,0 +1,194 @@
+"""A CiA 402 drive in cyclic synchronous torque mode, as the loop has it."""
+
+import math
+from typing import TYPE_CHECKING
+
+from bikesim.bench.cia402 import (
+    CYCLIC_SYNCHRONOUS_TORQUE,
+    DISABLE_VOLTAGE,
+    Goal,
+    NmtState,
+    State,
+    next_controlword,
+    state_of,
+)
+from bikesim.bench.cia402_frames import (
+    SYNC,
+    CobIds,
+    DriveCommand,
+    heartbeat,
+    pack_command,
+    unpack_emergency,
+    unpack_heartbeat,
+    unpack_motion,
+    unpack_status,
+)
+from bikesim.bench.cia402_settings import Cia402Settings
+from bikesim.bench.drive import DriveView
+from bikesim.bench.frame import Frame
+
+if TYPE_CHECKING:
+    import can
+
+
+class Cia402Drive:
+    """See `Drive`. A fault is reset only on the way to being enabled for the first time.
+
+    A drive whose host was silent since it was set up is in fault for that; one that fails while
+    it is enabled stays where it is until a person starts anew.
+    """
+
+    def __init__(self, settings: Cia402Settings) -> None:
+        self._settings = settings
+        self._scale = settings.scale
+        self._cob = CobIds.of_node(settings.node)
+        self._heartbeat = heartbeat(settings.host_node)
+        # Three may get lost before the drive disables itself.
+        self._heartbeat_pause = settings.heartbeat_timeout / 4
+        self._next_heartbeat = -math.inf
+        self._controlword = DISABLE_VOLTAGE
+        self._state = State.UNKNOWN
+        self._mode = 0  # until it says
+        self._torque = self._steer = self._steer_rate = 0.0
+        self._seen = self._heard = -math.inf
+        self._asked = math.inf
+        """When the oldest SYNC was sent that it has not answered."""
+        self._error = ""
+        self._armed = False
+        self._last_error = 0
+        self._nmt = NmtState.OPERATIONAL
+
+    @property
+    def name(self) -> str:
+        return f"CiA 402 drive {self._settings.node}"
+
+    @property
+    def heartbeat_period(self) -> float:
+        return self._settings.heartbeat_period
+
+    @property
+    def watchdog_timeout(self) -> float:
+        return self._settings.heartbeat_timeout
+
+    @property
+    def ids(self) -> frozenset[int]:
+        return frozenset(self._cob.from_drive)
+
+    @property
+    def host_ids(self) -> frozenset[int]:
+        return frozenset(self._cob.to_drive(self._settings.host_node))
+
+    def set_up(self, bus: "can.BusABC") -> tuple[str, ...]:
+        from bikesim.bench.cia402_setup import set_up
+        from bikesim.bench.cia402_watchdog import prove_watchdog
+        from bikesim.bench.link import BusLink
+
+        report = set_up(bus, self._settings)
+        silent = prove_watchdog(BusLink(bus), self._settings)
+        return (
+            f"{self.name}: {report.name or 'without a name'}, rated {report.rated_torque:g} N m",
+            f"its watchdog disabled it {1e3 * silent:.0f} ms after the last heartbeat",
+            *(f"it has no {what}" for what in report.missing),
+        )
+
+    def receive(self, frame: Frame, time: float) -> None:
+        identifier, data = frame.id, frame.data
+        if identifier == self._cob.status:
+            self._take_status(data, time)
+        elif identifier == self._cob.motion:
+            self._take_motion(data)
+        elif identifier == self._cob.heartbeat:
+            nmt = unpack_heartbeat(data)
+            if nmt is not None:
+                self._heard, self._nmt = time, nmt
+        elif identifier == self._cob.emergency:
+            self._take_emergency(data)
+
+    def command(
+        self, torque: float, *, enable: bool, on_time: bool = True
+    ) -> tuple[list[Frame], float]:
+        del on_time  # the heartbeat feeds its watchdog, this frame does not
+        goal = self._goal(enable)
+        self._controlword = next_controlword(goal, self._state, self._controlword)
+        enabled = enable and self._state is State.OPERATION_ENABLED
+        units = self._scale.to_drive(torque) if enabled else 0
+        return [self._command(units)], self._scale.torque(units)
+
+    def _goal(self, enable: bool) -> Goal:
+        if not enable:
+            self._armed, self._error = False, ""
+            return Goal.DISABLED
+        if self._armed or self._state is not State.FAULT:
+            return Goal.ENABLED
+        return Goal.RESET
+
+    def upkeep(self, time: float, *, on_time: bool = True) -> list[Frame]:
+        if self._asked == math.inf:
+            self._asked = time
+        if not on_time or time < self._next_heartbeat:
+            return [SYNC]
+        self._next_heartbeat = time + self._heartbeat_pause
+        return [SYNC, self._heartbeat]
+
+    def farewell(self) -> list[Frame]:
+        self._controlword = DISABLE_VOLTAGE
+        return [self._command(0), SYNC]
+
+    def traffic(self, period: float) -> tuple[tuple[int, float], ...]:
+        ours, theirs = 1 / self._heartbeat_pause, 1 / self._settings.heartbeat_period
+        in_a_tick = (5, 0, 8, 7)  # RPDO1, SYNC, TPDO1, TPDO2
+        return (*((size, 1 / period) for size in in_a_tick), (1, ours), (1, theirs))
+
+    def view(self, time: float) -> DriveView:
+        return DriveView(
+            time - self._seen,
+            max(time - self._asked, 0.0),
+            time - self._heard,
+            self._state is State.OPERATION_ENABLED,
+            self._trouble(),
+            self._error,
+            self._torque,
+            self._steer,
+            self._steer_rate,
+        )
+
+    def _command(self, units: int) -> Frame:
+        command = DriveCommand(self._controlword, units, CYCLIC_SYNCHRONOUS_TORQUE)
+        return Frame(self._cob.command, pack_command(command))
+
+    def _take_status(self, data: bytes, time: float) -> None:
+        status = unpack_status(data)
+        if status is None:
+            self._error = f"{self.name} sends {len(data)} bytes where its status has 8"
+            return
+        self._seen, self._asked = time, math.inf
+        self._state = state_of(status.statusword)
+        if self._state is State.OPERATION_ENABLED and not self._armed:
+            self._armed, self._error = True, ""
+        self._torque = self._scale.torque(status.torque)
+        self._steer = self._scale.steer(status.position)
+
+    def _take_motion(self, data: bytes) -> None:
+        motion = unpack_motion(data)
+        if motion is None:
+            self._error = f"{self.name} sends {len(data)} bytes where its motion has 7"
+            return
+        self._mode, self._last_error = motion.mode, motion.error
+        self._steer_rate = self._scale.steer_rate(motion.velocity)
+        if motion.error and self._armed:
+            self._error = self._error or f"{self.name} has error {motion.error:#06x}"
+
+    def _take_emergency(self, data: bytes) -> None:
+        emergency = unpack_emergency(data)
+        if emergency is not None and emergency.error and self._armed:
+            self._error = f"{self.name} reports error {emergency.error:#06x}"
+
+    def _trouble(self) -> str:
+        if self._mode != CYCLIC_SYNCHRONOUS_TORQUE:
+            return f"{self.name} is in mode {self._mode}"
+        if self._nmt is not NmtState.OPERATIONAL:
+            return f"{self.name} is {self._nmt.name.replace('_', ' ').lower()}"
+        if self._state is not State.OPERATION_ENABLED:
+            error = f", error {self._last_error:#06x}" if self._last_error else ""
+            return f"{self.name} is in {self._state.told}{error}"
+        return ""

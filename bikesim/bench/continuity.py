@@ -1,0 +1,76 @@
+"""Whether frames of a sensor node come one after the other: counter and sample time."""
+
+import math
+from enum import Enum
+from typing import NamedTuple
+
+COUNTS = 15  # the counter goes 0 to 14
+TIME_UNIT = 1e-5  # s
+_WRAP = 65536
+_SHORT = 0.3  # s, less than half a wrap-around
+
+
+class Flaw(Enum):
+    """Why a frame is not to be used."""
+
+    LENGTH = "not 8 bytes long"
+    CRC = "CRC wrong"
+    REPEATED = "counter unchanged"
+    FROZEN = "sample time unchanged or gone back"
+
+
+class BadFrame(NamedTuple):
+    """A frame that is not to be used."""
+
+    flaw: Flaw
+
+
+class Passage(NamedTuple):
+    """A good frame's place: sample time [s] on the node's clock, frames lost just before it."""
+
+    time: float
+    lost: int
+
+
+class Continuity:
+    """Follows counter and sample time of frames that are sent every `period` [s].
+
+    The time of the first frame is its own, within a wrap-around (0.65536 s).
+    """
+
+    def __init__(self, period: float) -> None:
+        self._period = period
+        self._half_lap = COUNTS / 2 * period / TIME_UNIT
+        self._counter = -1
+        self._ticks = 0  # unwrapped, in TIME_UNIT
+        self._arrival = -math.inf
+
+    def follow(self, counter: int, ticks: int, arrival: float) -> Passage | Flaw:
+        """For a frame's counter, its sample time [10 us] and when it came [s], host's clock."""
+        steps = (counter - self._counter) % COUNTS
+        passed = (ticks - self._ticks) % _WRAP
+        # The usual case, without what only a long gap needs: this is done in each tick.
+        if not (steps and 0 < passed < self._half_lap and arrival - self._arrival < _SHORT):
+            if self._counter < 0:
+                self._keep(counter, ticks, arrival)
+                return Passage(ticks * TIME_UNIT, 0)
+            passed = self._unwrapped(passed, arrival)
+            # The time tells how often the counter went around.
+            laps = round((passed * TIME_UNIT / self._period - steps) / COUNTS)
+            steps += COUNTS * max(laps, 0)
+        # What comes next is measured against this frame, bad or not: a counter that stands
+        # still while the time goes on must not look like a lap after half a lap's time.
+        self._keep(counter, self._ticks + max(passed, 0), arrival)
+        if steps == 0:
+            return Flaw.REPEATED
+        if passed <= 0:
+            return Flaw.FROZEN
+        return Passage(self._ticks * TIME_UNIT, steps - 1)
+
+    def _unwrapped(self, passed: int, arrival: float) -> int:
+        """The node's time since the last frame; of those that differ by a wrap, the nearest."""
+        waited = (arrival - self._arrival) / TIME_UNIT
+        return passed + _WRAP * round((waited - passed) / _WRAP)
+
+    def _keep(self, counter: int, ticks: int, arrival: float) -> None:
+        self._counter, self._ticks, self._arrival = counter, ticks, arrival

@@ -1,0 +1,163 @@
+"""One small watcher for each fault: looks at every tick's observation, says what it sees.
+
+They keep nothing but what the fault is about, and are asked at every tick, fault or not.
+"""
+
+import math
+from collections.abc import Callable
+
+from bikesim.bench.faults import Fault, Observation, Reaction, Thresholds
+from bikesim.bench.sensor_monitors import (
+    AngleStep,
+    Bias,
+    FrameLost,
+    InARow,
+    Lasting,
+    Slip,
+    sensor_flags,
+)
+
+Monitor = Callable[[Observation], Fault | None]
+
+
+def monitors(
+    thresholds: Thresholds, heartbeat_period: float, period: float = 0.001
+) -> tuple[Monitor, ...]:
+    """All that look at what came over the bus; `heartbeat_period` [s] is the drive's, `period` [s]
+    that of the loop.
+    """
+    t = thresholds
+    return (
+        emergency_stop,
+        bus_trouble,
+        second_master,
+        drive_error,
+        drive_trouble,
+        _DriveSilent(t.drive_age, t.drive_heartbeats * heartbeat_period),
+        FrameLost(t.hold_age, t.ramp_age, t.zero_age),
+        InARow(2, "with a wrong checksum", lambda o: o.bad_frames, t.bad_frames),
+        InARow(3, "repeated or frozen", lambda o: o.frozen_frames, t.frozen_frames),
+        sensor_flags,
+        AngleStep(t.angle_step, period),
+        Slip(t.slip_rate, t.slip_time),
+        Bias(t.bias_angle, t.bias_time),
+        _OverAngle(math.radians(t.trip_angle_deg)),
+        _OverSpeed(t.trip_rate, t.trip_rate_time),
+        _NotFollowed(t.follow_error, t.follow_time),
+        _Overrun(t.late, t.late_ticks, t.late_most),
+    )
+
+
+def emergency_stop(o: Observation) -> Fault | None:
+    """Row 21. The hardware cuts the power by itself; this only ends the run."""
+    if o.estop_closed:
+        return None
+    return Fault(21, "emergency stop", "a closed circuit", Reaction.ZERO)
+
+
+def bus_trouble(o: Observation) -> Fault | None:
+    """Row 20."""
+    return Fault(20, o.bus_trouble, "a sound bus", Reaction.ZERO) if o.bus_trouble else None
+
+
+def second_master(o: Observation) -> Fault | None:
+    """Row 24, while riding; before, it is a reason not to enable."""
+    if not o.second_master:
+        return None
+    return Fault(24, "another host commands the drive", "one host", Reaction.ZERO)
+
+
+def drive_error(o: Observation) -> Fault | None:
+    """Row 17."""
+    return (
+        Fault(17, o.drive_error, "no error of the drive", Reaction.ZERO) if o.drive_error else None
+    )
+
+
+def drive_trouble(o: Observation) -> Fault | None:
+    """Row 15."""
+    if not o.drive_trouble:
+        return None
+    return Fault(15, o.drive_trouble, "enabled, in torque mode", Reaction.ZERO)
+
+
+class _OverAngle:
+    """Row 8."""
+
+    def __init__(self, angle: float) -> None:
+        self._limit = angle
+
+    def __call__(self, o: Observation) -> Fault | None:
+        if abs(o.steer) <= self._limit:
+            return None
+        what = f"steer angle {math.degrees(o.steer):.1f} deg"
+        return Fault(8, what, f"{math.degrees(self._limit):g} deg", Reaction.ZERO)
+
+
+class _OverSpeed:
+    """Row 9."""
+
+    def __init__(self, rate: float, time: float) -> None:
+        self._limit, self._time = rate, time
+        self._lasting = Lasting()
+
+    def __call__(self, o: Observation) -> Fault | None:
+        fast = abs(o.steer_rate) > self._limit
+        lasting = self._lasting(fast, o.time)
+        if not fast or lasting < self._time - 1e-6:
+            return None
+        what = f"steer rate {o.steer_rate:.1f} rad/s for {1e3 * self._time:g} ms"
+        return Fault(9, what, f"{self._limit:g} rad/s", Reaction.ZERO)
+
+
+class _DriveSilent:
+    """Row 14: by the age of its process data, and of its heartbeat."""
+
+    def __init__(self, data: float, heartbeat: float) -> None:
+        self._data, self._heartbeat = data, heartbeat
+
+    def __call__(self, o: Observation) -> Fault | None:
+        named = (
+            ("data", o.drive_age, self._data),
+            ("heartbeat", o.drive_heartbeat_age, self._heartbeat),
+        )
+        for what, age, most in named:
+            if age > most:
+                said = f"no {what} of the drive for {1e3 * age:.1f} ms"
+                return Fault(14, said, f"{1e3 * most:g} ms", Reaction.ZERO)
+        return None
+
+
+class _NotFollowed:
+    """Row 16: torque that the drive measures against that which it was told."""
+
+    def __init__(self, error: float, time: float) -> None:
+        self._limit, self._time = error, time
+        self._lasting = Lasting()
+
+    def __call__(self, o: Observation) -> Fault | None:
+        error = o.torque_measured - o.torque_sent
+        apart = abs(error) > self._limit
+        lasting = self._lasting(apart, o.time)
+        if not apart or lasting < self._time - 1e-6:
+            return None
+        what = f"torque {error:+.2f} N m from the commanded for {1e3 * self._time:g} ms"
+        return Fault(16, what, f"{self._limit:g} N m", Reaction.ZERO)
+
+
+class _Overrun:
+    """Row 19."""
+
+    def __init__(self, late: float, ticks: int, most: float) -> None:
+        self._late, self._ticks, self._most = late, ticks, most
+        self._in_a_row = 0
+
+    def __call__(self, o: Observation) -> Fault | None:
+        self._in_a_row = self._in_a_row + 1 if o.late > self._late else 0
+        if o.late > self._most:
+            what = f"a tick {1e3 * o.late:.1f} ms late"
+            return Fault(19, what, f"{1e3 * self._most:g} ms", Reaction.RAMP)
+        if self._in_a_row >= self._ticks:
+            what = f"{self._in_a_row} ticks in a row more than {1e3 * self._late:g} ms late"
+            return Fault(19, what, f"less than {self._ticks}", Reaction.RAMP)
+        return None

@@ -1,0 +1,169 @@
+"""An ODrive in torque mode, as the loop has it."""
+
+import math
+from typing import TYPE_CHECKING
+
+from bikesim.bench.drive import DriveView
+from bikesim.bench.frame import Frame
+from bikesim.bench.odrive import (
+    AxisState,
+    Command,
+    clear_errors,
+    errors_told,
+    ids_from_odrive,
+    ids_to_odrive,
+    message_id,
+    set_axis_state,
+    set_input_torque,
+    unpack_errors,
+    unpack_estimates,
+    unpack_heartbeat,
+    unpack_torques,
+)
+from bikesim.bench.odrive_settings import ODriveSettings
+
+if TYPE_CHECKING:
+    import can
+
+    from bikesim.bench.link import Link
+
+_ERRORS_PERIOD = 0.1  # s, of Get_Error as it leaves the factory
+
+
+class ODrive:
+    """See `Drive`. Its watchdog is fed by the torque frames, and nothing else is sent to it.
+
+    Its errors are cleared only on the way to being enabled for the first time: since it was set up
+    its watchdog has run out.
+    """
+
+    def __init__(self, settings: ODriveSettings) -> None:
+        self._settings = settings
+        node = settings.node
+        self._heartbeat_id = message_id(node, Command.HEARTBEAT)
+        self._error_id = message_id(node, Command.GET_ERROR)
+        self._estimates_id = message_id(node, Command.GET_ENCODER_ESTIMATES)
+        self._torques_id = message_id(node, Command.GET_TORQUES)
+        self._state, self._asked = int(AxisState.IDLE), False
+        self._sent = 0.0
+        self._torque = self._steer = self._steer_rate = 0.0
+        self._seen = self._heard = -math.inf
+        self._error = ""
+        self._armed = False
+        self._errors = 0
+
+    @property
+    def name(self) -> str:
+        return f"ODrive {self._settings.node}"
+
+    @property
+    def heartbeat_period(self) -> float:
+        return self._settings.heartbeat_period
+
+    @property
+    def watchdog_timeout(self) -> float:
+        return self._settings.watchdog_timeout
+
+    @property
+    def ids(self) -> frozenset[int]:
+        return frozenset(ids_from_odrive(self._settings.node))
+
+    @property
+    def host_ids(self) -> frozenset[int]:
+        return frozenset(ids_to_odrive(self._settings.node))
+
+    def set_up(self, bus: "can.BusABC") -> tuple[str, ...]:
+        from bikesim.bench.link import BusLink
+
+        return self.set_up_over(BusLink(bus))
+
+    def set_up_over(self, link: "Link") -> tuple[str, ...]:
+        """As `set_up`, in the time of a link."""
+        from bikesim.bench.odrive_setup import set_up
+
+        report = set_up(link, self._settings)
+        within = f"within {1e3 * report.disarmed_after:.0f} ms of the last torque command"
+        return (f"{self.name}: its watchdog disarmed it {within}",)
+
+    def receive(self, frame: Frame, time: float) -> None:
+        identifier, data = frame.id, frame.data
+        if identifier == self._estimates_id:
+            estimates = unpack_estimates(data)
+            if estimates is not None:
+                self._seen = time
+                self._steer = self._settings.steer(estimates.position)
+                self._steer_rate = self._settings.steer_rate(estimates.velocity)
+        elif identifier == self._torques_id:
+            torques = unpack_torques(data)
+            if torques is not None:
+                self._torque = self._settings.torque(torques.estimate)
+        elif identifier == self._heartbeat_id:
+            said = unpack_heartbeat(data)
+            if said is not None:
+                self._heard, self._state = time, said.state
+                if said.state == AxisState.CLOSED_LOOP_CONTROL and self._asked:
+                    self._armed = True
+                self._take_errors(said.errors)
+        elif identifier == self._error_id:
+            errors = unpack_errors(data)
+            if errors is not None:
+                self._take_errors(errors.active)
+
+    def command(
+        self, torque: float, *, enable: bool, on_time: bool = True
+    ) -> tuple[list[Frame], float]:
+        node = self._settings.node
+        if not enable:
+            self._asked, self._armed, self._sent, self._error = False, False, 0.0, ""
+            return [set_input_torque(node, 0.0), set_axis_state(node, AxisState.IDLE)], 0.0
+        if self._state != AxisState.CLOSED_LOOP_CONTROL:
+            frames = [set_input_torque(node, 0.0)]
+            if not self._asked:
+                frames.append(clear_errors(node))
+                frames.append(set_axis_state(node, AxisState.CLOSED_LOOP_CONTROL))
+                self._asked = True
+            self._sent = 0.0
+            return frames, 0.0
+        at_motor = self._settings.to_motor(torque)
+        if not on_time and at_motor:
+            return [], self._sent
+        self._sent = self._settings.torque(at_motor)
+        return [set_input_torque(node, at_motor)], self._sent
+
+    def upkeep(self, time: float, *, on_time: bool = True) -> list[Frame]:
+        del time, on_time
+        return []
+
+    def traffic(self, period: float) -> tuple[tuple[int, float], ...]:
+        s = self._settings
+        theirs = (s.heartbeat_period, _ERRORS_PERIOD, s.estimates_period, s.torques_period)
+        return (8, 1 / period), *((8, 1 / one) for one in theirs)
+
+    def farewell(self) -> list[Frame]:
+        node = self._settings.node
+        return [set_input_torque(node, 0.0), set_axis_state(node, AxisState.IDLE)]
+
+    def view(self, time: float) -> DriveView:
+        enabled = self._state == AxisState.CLOSED_LOOP_CONTROL
+        return DriveView(
+            time - self._seen,
+            time - self._seen,
+            time - self._heard,
+            enabled,
+            "" if enabled else self._trouble(),
+            self._error,
+            self._torque,
+            self._steer,
+            self._steer_rate,
+        )
+
+    def _take_errors(self, errors: int) -> None:
+        self._errors = errors
+        if errors and self._armed:
+            self._error = f"{self.name} reports {errors_told(errors)}"
+
+    def _trouble(self) -> str:
+        told = f": {errors_told(self._errors)}" if self._errors else ""
+        return (
+            f"{self.name} is in state {self._state}, not {int(AxisState.CLOSED_LOOP_CONTROL)}{told}"
+        )

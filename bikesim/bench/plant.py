@@ -1,0 +1,139 @@
+"""What an emulated bench is made of: devices, and a bar in MuJoCo with a rider's hands on it."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from bikesim.bench.cia402_settings import Cia402Settings
+from bikesim.bench.emulated.cia402_drive import EmulatedDrive
+from bikesim.bench.emulated.device import Device
+from bikesim.bench.emulated.motor import Motor
+from bikesim.bench.emulated.odrive import EmulatedODrive, ODriveConfiguration
+from bikesim.bench.emulated.steer_node import EmulatedSteerNode
+from bikesim.bench.emulated.wheel_node import EmulatedWheelNode
+from bikesim.bench.profile import BenchSettings
+from bikesim.experiment.run import make_setting, scenario_bicycle, sources
+from bikesim.experiment.scenario import Scenario
+from bikesim.experiment.torque_record import with_recorded_torque
+from bikesim.model.haptic import BicycleState, HapticBicycle
+from bikesim.model.law import Law
+from bikesim.rider.base import Arms, Rider
+from bikesim.rider.building import make_rider
+from bikesim.rig.virtual import VirtualRig
+
+_OFF = Arms()
+
+
+class EmulatedShaft(Protocol):
+    """What the two kinds of emulated drive have in common: a shaft."""
+
+    angle: float
+    rate: float
+
+    @property
+    def torque(self) -> float: ...
+
+
+class _Hands:
+    """A rider who lays his hands on the bar when the ride begins, and not before."""
+
+    def __init__(self, make: Callable[[], Rider]) -> None:
+        self._make, self._rider = make, make()
+        self.riding = False
+
+    def rest(self) -> None:
+        """The next ride begins as the first: he remembers nothing of this one."""
+        if self.riding:
+            self.riding, self._rider = False, self._make()
+
+    @property
+    def arms(self) -> Arms:
+        return self._rider.arms if self.riding else _OFF
+
+    def torque(self, steer: float, steer_rate: float, seen: BicycleState) -> float:
+        return self._rider.torque(steer, steer_rate, seen) if self.riding else 0.0
+
+
+class Plant:
+    """The bench of a profile without its host: the bar turns, the devices know it.
+
+    `quantum` [s] is what `advance` passes; the torque is what the drive gives at its beginning.
+    """
+
+    def __init__(self, bench: BenchSettings, scenario: Scenario, *, quantum: float) -> None:
+        """`scenario` as `bench_scenario` gives it: rider, seed, physics step, and the bar."""
+        bicycle = scenario_bicycle(scenario)
+        setting = make_setting(scenario, bicycle, scenario.speed)
+        rider = with_recorded_torque(scenario.rider)
+        self._hands = _Hands(
+            lambda: make_rider(rider, setting, scenario.vision, sources(scenario)[0])
+        )
+        self._rest = HapticBicycle(bicycle, Law(scenario.law)).start(speed=scenario.speed)
+        self.bar = VirtualRig(
+            scenario.rig,
+            self._hands,
+            name="emulated",
+            inertia=bench.bar.inertia,
+            steer_axis_tilt=bicycle.steer_axis_tilt,
+            period=quantum,
+            step=min(scenario.physics_step, quantum),
+            random=np.random.default_rng(0),
+        )
+        self.bar.show(self._rest)
+        self._ratio = bench.drive.gear * bench.drive.direction
+        self.drive = _emulated_drive(bench)
+        self.node = EmulatedSteerNode()
+        self.wheel = None if bench.wheel is None else EmulatedWheelNode(bench.wheel)
+        if self.wheel is not None:
+            self.wheel.speed = scenario.speed
+        self.largest_torque = 0.0
+        """That the drive ever gave, at the steer axis [N m]."""
+        self._follow()
+
+    @property
+    def devices(self) -> tuple[Device, ...]:
+        """All that are on the bus."""
+        sensors = (self.node,) if self.wheel is None else (self.node, self.wheel)
+        return (*sensors, self.drive)
+
+    @property
+    def steer(self) -> float:
+        """The bar's true angle [rad]."""
+        return self.bar.telemetry()[2]
+
+    @property
+    def torque(self) -> float:
+        """Of the drive on the bar, now [N m]."""
+        return self.drive.torque * self._ratio
+
+    def show(self, bicycle: BicycleState | None) -> None:
+        """To the rider's eyes; None: there is no ride, his hands are off, the bar is straight."""
+        if bicycle is not None:
+            self._hands.riding = True
+            self.bar.show(bicycle)
+            return
+        self._hands.rest()
+        self.bar.data.qpos[0] = self.bar.data.qvel[0] = 0.0
+        self.bar.show(self._rest)
+
+    def advance(self) -> None:
+        """One quantum on."""
+        torque = self.torque
+        self.largest_torque = max(self.largest_torque, abs(torque))
+        self.bar.command(torque)
+        self.bar.wait()
+        self._follow()
+
+    def _follow(self) -> None:
+        _, _, steer, rate = self.bar.telemetry()
+        self.node.steer, self.node.steer_rate = steer, rate
+        self.drive.angle, self.drive.rate = steer * self._ratio, rate * self._ratio
+
+
+def _emulated_drive(bench: BenchSettings) -> EmulatedDrive | EmulatedODrive:
+    """A case for each kind of drive."""
+    drive = bench.drive
+    if isinstance(drive, Cia402Settings):
+        return EmulatedDrive(drive.node, Motor.of_profile(drive))
+    return EmulatedODrive(drive.node, ODriveConfiguration.of_profile(drive))

@@ -1,0 +1,129 @@
+"""A bench as a file: bus, devices, bar, limits and thresholds, validated."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from bikesim.bench.bus import BusSettings
+from bikesim.bench.cia402_settings import Cia402Settings
+from bikesim.bench.faults import Thresholds
+from bikesim.bench.guard import TorqueLimits
+from bikesim.bench.odrive_settings import ODriveSettings
+from bikesim.bench.wheel_node import WheelSettings
+from bikesim.data import data_path
+from bikesim.errors import unknown
+from bikesim.settings import Settings
+from bikesim.textfile import located, read_toml
+
+_Figure = Annotated[float, Field(ge=0, le=100)]
+
+
+class BarSettings(Settings):
+    """The handlebar as identified, with everything that turns with it, the rider's arms not."""
+
+    table: ClassVar[str] = "bar"
+
+    inertia: Annotated[float, Field(ge=1e-4, le=100)] = Field(
+        description="I_delta about the steer axis [kg m²], motor and gear included."
+    )
+    coulomb_friction: _Figure = Field(default=0.0, description="At the steer axis [N m].")
+    viscous_friction: _Figure = Field(default=0.0, description="At the steer axis [N m s/rad].")
+    steer_stop_deg: Annotated[float, Field(gt=1, le=180)] = Field(
+        default=60.0, description="Mechanical stop, each side [deg]."
+    )
+    delay: Annotated[float, Field(ge=0, le=0.5)] = Field(
+        default=0.002, description="From the bar's motion to torque, all in all [s]."
+    )
+    source: Literal["node", "drive"] = Field(
+        default="node", description="Of steer angle and rate: the sensor node, or the drive."
+    )
+    drive_zero: Annotated[float, Field(ge=-1e6, le=1e6)] = Field(
+        default=0.0, description="What the drive's encoder says of a straight bar [rad]."
+    )
+    coupling: Annotated[float, Field(ge=0, le=0.95)] = Field(
+        default=0.0,
+        description="Virtual inertia, of the part of I_delta that the bar lacks; 0: none.",
+    )
+
+
+class BenchSettings(Settings):
+    """A bench profile. What a bench must be known by has no default: nothing is guessed."""
+
+    description: str = Field(default="", description="What bench this is, and since when.")
+    commissioned: str = Field(
+        default="",
+        description="Which bar and drive passed the commissioning pulse: bench check --pulse.",
+    )
+    period: Annotated[float, Field(ge=5e-4, le=0.02)] = Field(
+        default=0.001, description="Of the loop [s]."
+    )
+    bus: BusSettings = Field(description="The CAN bus.")
+    bar: BarSettings = Field(description="The handlebar.")
+    drive: Annotated[Cia402Settings | ODriveSettings, Field(discriminator="kind")] = Field(
+        description="The motor and its drive."
+    )
+    wheel: WheelSettings | None = Field(
+        default=None, description="The speed sensor; default: none, the speed is the scenario's."
+    )
+    limits: TorqueLimits = Field(default=TorqueLimits(), description="Of the torque.")
+    thresholds: Thresholds = Field(default=Thresholds(), description="Of the faults.")
+
+    @property
+    def commissioning(self) -> str:
+        """What `commissioned` is once the pulse has proven signs, units and inertia as they are."""
+        drive = self.drive.model_dump(exclude={"objects", "torque_limit", "speed_limit"})
+        proven = {"drive": drive, "inertia": self.bar.inertia, "source": self.bar.source}
+        return hashlib.sha256(json.dumps(proven, sort_keys=True).encode()).hexdigest()[:12]
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if self.limits.torque > self.drive.torque_limit + 1e-9:
+            raise ValueError(
+                f"limits.torque = {self.limits.torque} N m: is more than drive.torque_limit = "
+                f"{self.drive.torque_limit} N m, to which the drive itself keeps"
+            )
+        if self.limits.continuous_torque > self.limits.torque:
+            raise ValueError(
+                f"limits.continuous_torque = {self.limits.continuous_torque} N m: is more than "
+                f"limits.torque = {self.limits.torque} N m"
+            )
+        if self.bar.source == "drive" and self.bar.delay < self.period:
+            raise ValueError(
+                f"bar.delay = {self.bar.delay} s: is less than the period, {self.period} s, by "
+                'which data of the drive is late (bar.source = "drive")'
+            )
+        t = self.thresholds
+        if not t.hold_age < t.ramp_age < t.zero_age:
+            raise ValueError("thresholds: hold_age, ramp_age and zero_age must rise, in this order")
+        if not t.soft_stop_deg < t.trip_angle_deg <= self.bar.steer_stop_deg:
+            raise ValueError(
+                f"thresholds: soft_stop_deg = {t.soft_stop_deg} < trip_angle_deg = "
+                f"{t.trip_angle_deg} <= bar.steer_stop_deg = {self.bar.steer_stop_deg} must hold"
+            )
+        return self
+
+
+def bench_names() -> tuple[str, ...]:
+    """The profiles that ship, by name."""
+    return tuple(sorted(path.stem for path in data_path("hardware", "benches").glob("*.toml")))
+
+
+def bench_path(name: str) -> Path:
+    """Of a profile by name or path. Raises InputError for a name that there is not."""
+    path = Path(name)
+    if path.suffix == ".toml":
+        return path
+    if name not in bench_names():
+        raise unknown("bench", name, bench_names())
+    return data_path("hardware", "benches", f"{name}.toml")
+
+
+def load_bench(name: str) -> BenchSettings:
+    """A profile that ships, by name, or a TOML file by its path. Raises InputError."""
+    path = bench_path(name)
+    keys = read_toml(path, "bench profile")
+    with located(f"bench {path}"):
+        return BenchSettings(**keys)

@@ -1,0 +1,118 @@
+"""The record of a ride, written on a thread of its own, and the raw frames beside it."""
+
+import contextlib
+import os
+import threading
+import time
+from collections import deque
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from bikesim.bench.faults import Fault, Observation, Reaction
+from bikesim.errors import InputError
+from bikesim.model.real import Real
+from bikesim.realtime import PRIORITY
+from bikesim.record.header import Ending
+from bikesim.record.writer import RunWriter
+
+if TYPE_CHECKING:
+    import can
+
+_PAUSE = 0.01  # s, between two looks at what there is to write
+_AT_ONCE = 50  # rows or frames, before the tick's thread is let in
+_ROW = 27
+
+
+class ThreadedRecorder:
+    """Takes a tick's row, and the bus's frames, at the cost of an append; a thread writes both.
+
+    What cannot be written is said in `trouble`, once, and never raised into a tick. What was
+    written before is kept.
+    """
+
+    def __init__(self, writer: RunWriter, frames: Path | None = None) -> None:
+        self._writer, self._path = writer, frames
+        self._rows: deque[tuple[Real, ...]] = deque()
+        self._frames: deque[can.Message] = deque()
+        self.trouble = ""
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def append(self, row: tuple[Real, ...]) -> None:
+        """A tick's."""
+        self._rows.append(row)
+
+    def log(self, message: "can.Message") -> None:
+        """A frame, sent or received."""
+        self._frames.append(message)
+
+    def stop(self) -> None:
+        """Writes what is left. Once is enough."""
+        self._done.set()
+        self._thread.join()
+
+    def finish(self, ending: Ending) -> None:
+        """Stops, and says why the ride ended. Raises InputError if the record is not whole."""
+        self.stop()
+        self._writer.finish(ending)
+        if self.trouble:
+            raise InputError(self.trouble)
+
+    def failed(self, o: Observation) -> Fault | None:
+        """A monitor: nobody should ride on without a record."""
+        del o
+        if not self.trouble:
+            return None
+        return Fault(_ROW, f"recording: {self.trouble}", "a record", Reaction.RAMP)
+
+    def _run(self) -> None:
+        _stand_back()
+        try:
+            if self._path is None:
+                self._write_until_done(None)
+                return
+            from can.io.blf import BLFWriter
+
+            with BLFWriter(self._path) as log:
+                self._write_until_done(log)
+        except InputError as error:
+            self.trouble = str(error)
+        except Exception as error:  # whatever it is, the ride must hear of it
+            self.trouble = f"{type(error).__name__}: {error}"
+
+    def _write_until_done(self, log) -> None:
+        while True:
+            done = self._done.is_set()
+            while self._write_some(log):
+                # Others may have waited for this interpreter.
+                time.sleep(0)
+            if done:
+                return
+            self._done.wait(_PAUSE)
+
+    def _write_some(self, log) -> bool:
+        rows, frames = self._rows, self._frames
+        for _ in range(min(_AT_ONCE, len(rows))):
+            self._writer.append(rows.popleft())
+        for _ in range(min(_AT_ONCE, len(frames))):
+            message = frames.popleft()
+            if log is not None:
+                log.on_message_received(message)
+        return len(rows) + len(frames) >= _AT_ONCE
+
+
+def _stand_back() -> None:
+    """Behind the loop, where both are under real-time scheduling.
+
+    Before all others all the same: while it holds the interpreter the loop waits for it.
+    """
+    with contextlib.suppress(OSError, AttributeError):
+        if os.sched_getscheduler(0) == os.SCHED_FIFO:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY - 1))

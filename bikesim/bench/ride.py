@@ -1,0 +1,275 @@
+"""A ride on a bench: the loop of the virtual rig, unchanged, on a real bar."""
+
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from bikesim.bench.arm import arm, listen
+from bikesim.bench.bus import BusPort, filter_for, open_bus
+from bikesim.bench.display import Screen, screen_name
+from bikesim.bench.drive import Drive
+from bikesim.bench.drives import make_drive
+from bikesim.bench.guard import BenchGuard
+from bikesim.bench.monitors import Monitor
+from bikesim.bench.preflight import Preflight, check_margins, preflight, told
+from bikesim.bench.profile import BenchSettings
+from bikesim.bench.pulse import send_pulse
+from bikesim.bench.recorder import ThreadedRecorder
+from bikesim.bench.rig import BENCH_CHANNELS, BenchRig, Clock, Port
+from bikesim.bench.scenario import header_text
+from bikesim.bench.senses import Bar, DriveBar, NodeBar
+from bikesim.bench.stopping import Stopping
+from bikesim.bench.wheel_course import Wheel, WheelCourse, WheelSilent
+from bikesim.clock import RealTimeClock
+from bikesim.errors import InputError
+from bikesim.experiment.course import ScenarioCourse
+from bikesim.experiment.scenario import Scenario
+from bikesim.haptics import make_haptics
+from bikesim.loop import Course, Recorder, Start, ride
+from bikesim.realtime import real_time
+from bikesim.record.channels import TICK_CHANNELS
+from bikesim.record.header import Ending, RunHeader
+from bikesim.record.provenance import Provenance
+from bikesim.record.writer import RunWriter
+from bikesim.rig.base import RigInfo
+
+Say = Callable[[str], object]
+
+# How long another thread may keep the interpreter from the loop [s]; Python's own is 5 ms.
+_SWITCH_INTERVAL = 5e-5
+
+
+@dataclass(frozen=True)
+class Order:
+    """A ride as a person wants it.
+
+    `scenario` as `bench_scenario` gives it; `pulse`: a commissioning pulse first, hands off;
+    `uncommissioned`: without there ever having been one; `without_margin`: how often he said that a
+    speed without margin is to be ridden; `frames`: where the bus's raw frames go (BLF).
+    """
+
+    name: str
+    bench: BenchSettings
+    scenario: Scenario
+    pulse: bool = False
+    uncommissioned: bool = False
+    without_margin: int = 0
+    frames: Path | None = None
+
+
+class Parts:
+    """The parts of a bench, on a port: what arms, measures and rides uses them."""
+
+    def __init__(self, bench: BenchSettings, drive: Drive, port: Port, clock: Clock) -> None:
+        self.bench, self.drive = bench, drive
+        self.bar = make_bar(bench, drive)
+        self.wheel = None if bench.wheel is None else Wheel(bench.wheel)
+        self.rig = BenchRig(
+            RigInfo(
+                "bench",
+                bench.period,
+                bench.bar.inertia,
+                math.radians(bench.bar.steer_stop_deg),
+                BENCH_CHANNELS,
+            ),
+            port,
+            self.bar,
+            drive,
+            clock=clock,
+            late=bench.thresholds.late_most,
+            others=() if self.wheel is None else (self.wheel,),
+            host_ids=frozenset() if bench.bus.echoes else drive.host_ids,
+        )
+
+    def arm(self) -> None:
+        """See `arm.arm`."""
+        arm(self.rig, self.bench.thresholds, self.drive.heartbeat_period)
+
+    def pulse(self) -> str:
+        """See `pulse.send_pulse`; a line for a person."""
+        bench = self.bench
+        found = send_pulse(
+            self.rig, bench.bar, bench.limits, bench.thresholds, self.drive.heartbeat_period
+        )
+        return (
+            f"pulse    inertia {found.inertia:.4g} kg m² (profile {bench.bar.inertia:.4g}), torque "
+            f"measured {100 * found.torque_ratio:.0f} % of that commanded"
+        )
+
+
+def make_bar(bench: BenchSettings, drive: Drive) -> Bar:
+    """Where steer angle and rate come from."""
+    return NodeBar() if bench.bar.source == "node" else DriveBar(drive, bench.bar.drive_zero)
+
+
+def check_order(order: Order) -> Preflight:
+    """What can be known without a bus. Raises InputError."""
+    bench = order.bench
+    ready = preflight(bench, order.scenario, make_drive(bench.drive))
+    check_margins(ready, told=order.without_margin)
+    proven = bench.commissioned == bench.commissioning
+    if not (proven or order.pulse or order.uncommissioned):
+        never = "its bar or drive changed since" if bench.commissioned else "it never passed"
+        raise InputError(
+            f"fault 22: {order.name}: {never} the commissioning pulse: bikesim bench check "
+            f"{order.name} --pulse, hands off the bar (or --pulse, or --uncommissioned)"
+        )
+    return ready
+
+
+def run_bench(order: Order, output: Path, *, force: bool = False, say: Say = print) -> Ending:
+    """Arm, ramp in, ride, ramp out, disable; recorded in `output`. Raises InputError."""
+    ready = check_order(order)
+    bench = order.bench
+    header = RunHeader(
+        scenario=header_text(bench, order.scenario),
+        bicycle=ready.bicycle,
+        law=order.scenario.law,
+        handlebar_inertia=bench.bar.inertia,
+        rig="bench",
+        rider="person",
+        seed=order.scenario.seed,
+        provenance=Provenance.gather(),
+    )
+    drive = make_drive(bench.drive)
+    with (
+        on_the_bus(bench, drive, say) as bus,
+        Screen(screen_name(bench.bus)) as screen,
+        RunWriter(
+            output,
+            channels=(*TICK_CHANNELS, *BENCH_CHANNELS),
+            period=bench.period,
+            planned_ticks=order.scenario.ticks + round(1 / bench.period),
+            header=header,
+            force=force,
+        ) as writer,
+    ):
+        recorder = ThreadedRecorder(writer, order.frames)
+        with real_time() as granted, recorder, _prompt_threads():
+            for line in told(ready, granted):
+                say(line)
+            port = BusPort(bus, wanted_ids(bench, drive), recorder.log)
+            parts = Parts(bench, drive, port, RealTimeClock(bench.period))
+            try:
+                ridden = Ride(order, ready, parts, recorder, [recorder.failed])
+                ending = _armed_ride(ridden, screen, say)
+            finally:
+                parts.rig.close()
+        recorder.finish(ending)
+    if parts.rig.disabled is not True:
+        say(f"WARNING  {drive.name} did not say that it is disabled: cut its power")
+    return ending
+
+
+def _armed_ride(ridden: "Ride", screen: Screen, say: Say) -> Ending:
+    """Nothing here may take long: the drive listens for its host."""
+    parts, order = ridden.parts, ridden.order
+    say(f"arming   {parts.drive.name}; its torque will ramp in over {ridden.ramp_in:g} s")
+    parts.arm()
+    pulse = parts.pulse() if order.pulse else None
+    parts.rig.hooks = parts.rig.hooks._replace(show=screen.show)
+    stopping = Stopping(ridden.guard.ask_to_stop)
+    with stopping.watching():
+        ending = ridden.go(stopping)
+    if pulse is not None:
+        say(pulse)
+    return ending
+
+
+class Ride:
+    """Everything of a ride, made before the drive is armed."""
+
+    def __init__(
+        self,
+        order: Order,
+        ready: Preflight,
+        parts: Parts,
+        record: Recorder,
+        more: Iterable[Monitor] = (),
+    ) -> None:
+        """`more` look for faults besides."""
+        scenario, bench = order.scenario, order.bench
+        self.order, self.parts = order, parts
+        self.ramp_in = bench.thresholds.ramp_in
+        course: Course = ScenarioCourse(scenario, ready.bicycle)
+        course.disturbance(0.0)
+        wheel: list[Monitor] = []
+        if parts.wheel is not None:
+            course = WheelCourse(parts.wheel, course, bench.limits.speed)
+            wheel = [WheelSilent(parts.wheel)]
+        self.guard = BenchGuard(
+            bench.limits,
+            bench.thresholds,
+            period=bench.period,
+            heartbeat_period=parts.drive.heartbeat_period,
+            observe=parts.rig.observation,
+            end=scenario.duration - 0.5 * bench.period,
+            more=[*wheel, *more],
+        )
+        self._record, self._course, self._haptic = record, course, ready.haptic
+        self._haptics = make_haptics(scenario.haptics, bench.period)
+        start = scenario.start
+        self._start = Start(
+            math.radians(start.roll_deg),
+            math.radians(start.roll_rate_deg_s),
+            math.radians(start.heading_deg),
+        )
+        # The guard ends it, by the time; more ticks are there for the case that it does not.
+        self._ticks = scenario.ticks + round((bench.thresholds.ramp_out + 1.0) / bench.period)
+
+    def go(self, interrupted: Callable[[], bool] = lambda: False) -> Ending:
+        """The loop, on a rig that is armed; the rig is closed afterwards."""
+        rig, guard = self.parts.rig, self.guard
+        rig.hooks = rig.hooks._replace(fault=lambda: guard.row)
+        rig.begin()
+        return ride(
+            rig,
+            self._haptic,
+            guard,
+            self._record,
+            course=self._course,
+            start=self._start,
+            ticks=self._ticks,
+            haptics=self._haptics,
+            interrupted=interrupted,
+        )
+
+
+@contextmanager
+def on_the_bus(bench: BenchSettings, drive: Drive, say: Say = print) -> Iterator:
+    """The profile's bus with the drive on it set up, disabled, its watchdog proven.
+
+    Whoever is asked for is there and nobody else commands the drive. Raises InputError.
+    """
+    bar = make_bar(bench, drive)
+    wheel = () if bench.wheel is None else (Wheel(bench.wheel),)
+    bus = open_bus(bench.bus)
+    try:
+        listen(bus, drive, bar, wheel)
+        filter_for(bus, drive.ids)
+        for line in drive.set_up(bus):
+            say(f"drive    {line}")
+        filter_for(bus, None)
+        yield bus
+    finally:
+        bus.shutdown()
+
+
+def wanted_ids(bench: BenchSettings, drive: Drive) -> frozenset[int]:
+    """Of all that is on the bus: what the loop takes, a second master's frames where it can."""
+    wheel = frozenset[int]() if bench.wheel is None else Wheel(bench.wheel).ids
+    others = frozenset[int]() if bench.bus.echoes else drive.host_ids
+    return make_bar(bench, drive).ids | drive.ids | wheel | others
+
+
+@contextmanager
+def _prompt_threads() -> Iterator[None]:
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(_SWITCH_INTERVAL)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)

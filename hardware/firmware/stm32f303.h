@@ -1,0 +1,82 @@
+/* The registers of an STM32F303 that this node uses, as its reference manual RM0316 has them. */
+#ifndef STM32F303_H
+#define STM32F303_H
+
+#include <stdint.h>
+
+#define REGISTER(address) (*(volatile uint32_t *)(address))
+#define BIT(n) (1u << (n))
+#define REGISTER16(address) (*(volatile uint16_t *)(address))
+
+/* Clocks and the flash's interface */
+#define RCC_CR REGISTER(0x40021000u)
+#define RCC_CFGR REGISTER(0x40021004u)
+#define RCC_AHBENR REGISTER(0x40021014u)
+#define RCC_APB1ENR REGISTER(0x4002101Cu)
+#define FLASH_ACR REGISTER(0x40022000u)
+#define FLASH_KEYR REGISTER(0x40022004u)
+#define FLASH_SR REGISTER(0x4002200Cu)
+#define FLASH_CR REGISTER(0x40022010u)
+#define FLASH_AR REGISTER(0x40022014u)
+
+/* Pins */
+#define GPIOA_MODER REGISTER(0x48000000u)
+#define GPIOA_PUPDR REGISTER(0x4800000Cu)
+#define GPIOA_IDR REGISTER(0x48000010u)
+#define GPIOB_MODER REGISTER(0x48000400u)
+#define GPIOB_OSPEEDR REGISTER(0x48000408u)
+#define GPIOB_AFRH REGISTER(0x48000424u)
+#define GPIOC_MODER REGISTER(0x48000800u)
+
+/* Converter 1 */
+#define ADC1_ISR REGISTER(0x50000000u)
+#define ADC1_CR REGISTER(0x50000008u)
+#define ADC1_SMPR1 REGISTER(0x50000014u)
+#define ADC1_SMPR2 REGISTER(0x50000018u)
+#define ADC1_SQR1 REGISTER(0x50000030u)
+#define ADC1_DR REGISTER(0x50000040u)
+#define ADC12_CCR REGISTER(0x50000308u)
+
+/* Timers and the independent watchdog */
+#define TIM2_CR1 REGISTER(0x40000000u)
+#define TIM2_EGR REGISTER(0x40000014u)
+#define TIM2_CNT REGISTER(0x40000024u)
+#define TIM2_PSC REGISTER(0x40000028u)
+#define TIM2_ARR REGISTER(0x4000002Cu)
+#define SYST_CSR REGISTER(0xE000E010u)
+#define SYST_RVR REGISTER(0xE000E014u)
+#define SYST_CVR REGISTER(0xE000E018u)
+#define IWDG_KR REGISTER(0x40003000u)
+#define IWDG_PR REGISTER(0x40003004u)
+#define IWDG_RLR REGISTER(0x40003008u)
+#define IWDG_SR REGISTER(0x4000300Cu)
+
+/* CAN */
+#define CAN_MCR REGISTER(0x40006400u)
+#define CAN_MSR REGISTER(0x40006404u)
+#define CAN_TSR REGISTER(0x40006408u)
+#define CAN_RF0R REGISTER(0x4000640Cu)
+#define CAN_BTR REGISTER(0x4000641Cu)
+#define CAN_TIR(box) REGISTER(0x40006580u + 0x10u * (box))
+#define CAN_TDTR(box) REGISTER(0x40006584u + 0x10u * (box))
+#define CAN_TDLR(box) REGISTER(0x40006588u + 0x10u * (box))
+#define CAN_TDHR(box) REGISTER(0x4000658Cu + 0x10u * (box))
+#define CAN_RIR REGISTER(0x400065B0u)
+#define CAN_RDTR REGISTER(0x400065B4u)
+#define CAN_RDLR REGISTER(0x400065B8u)
+#define CAN_RDHR REGISTER(0x400065BCu)
+#define CAN_FMR REGISTER(0x40006600u)
+#define CAN_FM1R REGISTER(0x40006604u)
+#define CAN_FS1R REGISTER(0x4000660Cu)
+#define CAN_FFA1R REGISTER(0x40006614u)
+#define CAN_FA1R REGISTER(0x4000661Cu)
+#define CAN_F0R1 REGISTER(0x40006640u)
+#define CAN_F0R2 REGISTER(0x40006644u)
+
+/* What the maker measured: converter at 3.3 V, of the internal reference, of the temperature
+   sensor at 30 and 110 deg C. */
+#define VREFINT_CAL REGISTER16(0x1FFFF7BAu)
+#define TS_CAL1 REGISTER16(0x1FFFF7B8u)
+#define TS_CAL2 REGISTER16(0x1FFFF7C2u)
+
+#endif

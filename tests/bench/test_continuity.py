@@ -1,0 +1,66 @@
+import pytest
+
+from bikesim.bench.continuity import Continuity, Flaw, Passage
+
+
+def follow(sent: list[tuple[int, float]], came: list[float]) -> list[Passage | Flaw]:
+    """For counters and node times [s] as they were sent, and when they came [s]."""
+    continuity = Continuity(1e-3)
+    return [
+        continuity.follow(counter, round(time * 1e5) % 65536, arrival)
+        for (counter, time), arrival in zip(sent, came, strict=True)
+    ]
+
+
+def frames(numbers: list[int]) -> list[Passage | Flaw]:
+    """For the n-th frames of a node, without delay."""
+    return follow([(n % 15, n * 1e-3) for n in numbers], [n * 1e-3 for n in numbers])
+
+
+def lost(told: list[Passage | Flaw]) -> list[int]:
+    return [one.lost for one in told if isinstance(one, Passage)]
+
+
+def test_time_goes_on_when_both_wrap_around():
+    told = frames(list(range(2000)))
+    assert [one.time for one in told if isinstance(one, Passage)] == pytest.approx(
+        [n * 1e-3 for n in range(2000)]
+    )
+    assert set(lost(told)) == {0}
+
+
+@pytest.mark.parametrize("gap", [1, 2, 13, 14, 15, 29, 30, 100, 700, 3000])
+def test_frames_that_are_missing_are_counted(gap: int):
+    """Fifteen missing bring the same counter again; 656 ms the same time."""
+    assert lost(frames([0, 1, 2 + gap])) == [0, 0, gap]
+
+
+def test_a_frame_that_comes_again_is_repeated():
+    assert frames([0, 1, 1, 2])[2] is Flaw.REPEATED
+
+
+def test_a_counter_that_stands_still_is_not_taken_for_a_gap():
+    told = follow([(3, n * 1e-3) for n in range(100)], [n * 1e-3 for n in range(100)])
+    assert told[1:] == [Flaw.REPEATED] * 99
+
+
+def test_a_time_that_stands_still_is_frozen():
+    told = follow([(n % 15, 0.2) for n in range(100)], [n * 1e-3 for n in range(100)])
+    assert told[1:] == [Flaw.FROZEN] * 99
+
+
+def test_a_frame_overtaken_by_a_later_one_is_frozen():
+    assert frames([0, 1, 3, 2])[3] is Flaw.FROZEN
+
+
+def test_frames_that_come_late_are_good():
+    sent = [(n % 15, n * 1e-3) for n in range(6)]
+    told = follow(sent, [0.0, 0.001, 0.3, 0.3, 0.3, 0.3])
+    assert lost(told) == [0] * 6
+
+
+@pytest.mark.parametrize("counter", range(15))
+@pytest.mark.parametrize("ticks", [0, 1, 100, 65535])
+def test_before_the_first_frame_none_is_missing(counter: int, ticks: int):
+    told = Continuity(1e-3).follow(counter, ticks, 0.0)
+    assert told == Passage(ticks * 1e-5, 0)

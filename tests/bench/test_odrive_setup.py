@@ -1,0 +1,110 @@
+from dataclasses import replace
+
+import pytest
+
+from bikesim.bench.emulated.link import SimulatedLink
+from bikesim.bench.emulated.odrive import EmulatedODrive, ODriveConfiguration
+from bikesim.bench.frame import Frame
+from bikesim.bench.link import BusLink
+from bikesim.bench.odrive import AxisError, AxisState, set_axis_state, set_input_torque
+from bikesim.bench.odrive_settings import ODriveSettings
+from bikesim.bench.odrive_setup import set_up
+from bikesim.errors import InputError
+
+from .conftest import Wire
+
+
+def emulated(drive: ODriveSettings, **changes) -> EmulatedODrive:
+    return EmulatedODrive(3, replace(ODriveConfiguration.of_profile(drive), **changes))
+
+
+@pytest.mark.parametrize("feeds", [True, False])
+def test_what_it_leaves(odrive: ODriveSettings, feeds: bool):
+    device = emulated(odrive, any_frame_feeds=feeds)
+    report = set_up(SimulatedLink([device]), odrive)
+    assert 0.030 < report.disarmed_after <= 0.030 + 0.010 + 0.003
+    assert (device.state, device.errors, device.torque) == (AxisState.IDLE, 0, 0.0)
+    now = 1000.0
+    device.receive(set_input_torque(3, 9.0), now)
+    device.receive(set_axis_state(3, AxisState.CLOSED_LOOP_CONTROL), now)
+    assert device.torque * odrive.gear == pytest.approx(odrive.torque_limit)
+
+
+class Listening(EmulatedODrive):
+    """Keeps the largest torque that it ever gave, and what was asked of it."""
+
+    largest = 0.0
+    polled = 0
+
+    def receive(self, frame: Frame, time: float) -> list[Frame]:
+        self.polled += frame.remote
+        sent = super().receive(frame, time)
+        self.largest = max(self.largest, abs(self.torque))
+        return sent
+
+
+def test_no_torque_is_ever_given_and_nothing_is_polled(odrive: ODriveSettings):
+    device = Listening(3, ODriveConfiguration.of_profile(odrive))
+    device._input_torque = 0.7
+    set_up(SimulatedLink([device]), odrive)
+    assert (device.largest, device.polled) == (0.0, 0)
+
+
+def refused(device: EmulatedODrive, drive: ODriveSettings) -> str:
+    with pytest.raises(InputError) as error:
+        set_up(SimulatedLink([device]), drive)
+    assert "\n" not in str(error.value)
+    assert device.torque == 0.0
+    assert device.state is AxisState.IDLE
+    return str(error.value)
+
+
+@pytest.mark.parametrize("timeout", [None, 0.5], ids=str)
+def test_without_its_watchdog_it_is_refused(odrive: ODriveSettings, timeout: float | None):
+    told = refused(emulated(odrive, watchdog_timeout=timeout), odrive)
+    assert "still enabled" in told
+    assert "watchdog_timeout = 0.03" in told
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"estimates_period": 0.0}, "sent 0 encoder messages"),
+        ({"estimates_period": 0.01}, "set encoder_msg_rate_ms"),
+        ({"heartbeat_period": 0.1}, "set heartbeat_msg_rate_ms"),
+        ({"torques_period": 0.0}, "set torques_msg_rate_ms"),
+        ({"heartbeat_period": 0.0}, "sends no heartbeat"),
+    ],
+    ids=str,
+)
+def test_messages_that_do_not_come_are_named(odrive: ODriveSettings, changes: dict, told: str):
+    assert told in refused(emulated(odrive, **changes), odrive)
+
+
+class Broken(EmulatedODrive):
+    """Has an error that comes back as soon as it is cleared."""
+
+    def advance(self, time: float) -> list[Frame]:
+        self.fail(AxisError.DRV_FAULT)
+        return super().advance(time)
+
+
+def test_an_axis_that_cannot_be_enabled(odrive: ODriveSettings):
+    device = Broken(3, ODriveConfiguration.of_profile(odrive))
+    assert "does not go into closed-loop control: state 1, drv fault" in refused(device, odrive)
+
+
+def test_nobody_answers(odrive: ODriveSettings):
+    with pytest.raises(InputError, match="ODrive 3: sends no heartbeat"):
+        set_up(SimulatedLink([]), odrive)
+
+
+def test_over_a_bus(wire: Wire, odrive: ODriveSettings):
+    """In real time, with figures for a machine that has other things to do."""
+    drive = odrive.model_copy(
+        update={"watchdog_timeout": 0.2, "estimates_period": 0.01, "torques_period": 0.02}
+    )
+    device = emulated(drive)
+    with wire.with_devices(device) as bus:
+        assert set_up(BusLink(bus), drive).disarmed_after > 0.19
+        assert device.torque == 0.0

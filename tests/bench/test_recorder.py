@@ -1,0 +1,104 @@
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import can
+import pytest
+
+from bikesim import bicycles
+from bikesim.bench.faults import Reaction
+from bikesim.bench.recorder import ThreadedRecorder
+from bikesim.bench.rig import BENCH_CHANNELS
+from bikesim.errors import InputError
+from bikesim.record.channels import TICK_CHANNELS
+from bikesim.record.header import Ending, RunHeader
+from bikesim.record.provenance import Provenance
+from bikesim.record.reader import open_run
+from bikesim.record.writer import RunWriter
+
+HEADER = RunHeader(
+    scenario="", bicycle=bicycles.load("benchmark"), law="paper", handlebar_inertia=0.2,
+    rig="bench", rider="person", seed=1, provenance=Provenance.gather(),
+)  # fmt: skip
+ROW = tuple(0.0 for _ in (*TICK_CHANNELS, *BENCH_CHANNELS)) + (0.0, 0.0)
+
+
+def writer(path: Path, ticks: int = 3000) -> RunWriter:
+    return RunWriter(
+        path,
+        channels=(*TICK_CHANNELS, *BENCH_CHANNELS),
+        period=0.001,
+        planned_ticks=ticks,
+        header=HEADER,
+    )
+
+
+def row(tick: int) -> tuple[float, ...]:
+    return (tick * 0.001, *ROW[1:])
+
+
+def test_rows_and_frames_are_written_on_another_thread(tmp_path: Path):
+    with writer(tmp_path / "run.h5") as record:
+        with ThreadedRecorder(record, tmp_path / "run.blf") as recorder:
+            for tick in range(3000):
+                recorder.append(row(tick))
+                recorder.log(can.Message(arbitration_id=tick % 2000, is_extended_id=False))
+        recorder.finish(Ending("end of run"))
+    run = open_run(tmp_path / "run.h5")
+    assert run.ticks == 3000
+    assert run.time[-1] == pytest.approx(2.999)
+    assert run.ending == Ending("end of run")
+    frames = list(can.BLFReader(tmp_path / "run.blf"))
+    assert [one.arbitration_id for one in frames] == [tick % 2000 for tick in range(3000)]
+
+
+class FullDisk:
+    """A writer whose disk is full from the 100th row on."""
+
+    def __init__(self, record: RunWriter) -> None:
+        self._record, self._left = record, 100
+
+    def append(self, one: tuple[float, ...]) -> None:
+        if self._left == 0:
+            raise InputError("run.h5: cannot be written: no space left on device")
+        self._left -= 1
+        self._record.append(one)
+
+    def finish(self, ending: Ending) -> None:
+        self._record.finish(ending)
+
+
+def test_a_full_disk_is_a_fault_that_ramps_out_and_what_is_written_is_kept(tmp_path: Path):
+    full: Any = FullDisk(record := writer(tmp_path / "run.h5"))
+    observation: Any = None
+    with record:
+        with ThreadedRecorder(full) as recorder:
+            assert recorder.failed(observation) is None
+            for tick in range(500):
+                recorder.append(row(tick))
+            deadline = time.monotonic() + 5
+            while recorder.failed(observation) is None and time.monotonic() < deadline:
+                time.sleep(0.01)
+            fault = recorder.failed(observation)
+            assert fault is not None
+            assert fault.reaction is Reaction.RAMP
+            assert "no space left on device" in str(fault)
+            recorder.append(row(500))  # raises nothing
+        with pytest.raises(InputError, match="no space left"):
+            recorder.finish(Ending("fault"))
+    assert open_run(tmp_path / "run.h5").ticks == 100
+
+
+def test_frames_that_have_no_place_are_a_fault_too(tmp_path: Path):
+    with writer(tmp_path / "run.h5") as record, ThreadedRecorder(record, tmp_path) as recorder:
+        deadline = time.monotonic() + 5
+        while not recorder.trouble and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert "IsADirectoryError" in recorder.trouble
+
+
+def test_no_thread_is_left(tmp_path: Path):
+    with writer(tmp_path / "run.h5") as record, ThreadedRecorder(record):
+        pass
+    assert not [one for one in threading.enumerate() if one.name == "recorder"]

@@ -1,0 +1,31 @@
+"""The node's firmware, compiled for this machine with the board that is not there."""
+
+import shutil
+import subprocess
+from collections.abc import Callable
+from ctypes import CDLL
+from pathlib import Path
+
+import pytest
+
+from .binding import Firmware
+
+
+@pytest.fixture(scope="session")
+def library(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Built by its own Makefile, in which warnings are errors."""
+    assert shutil.which("cc"), "the tests of the firmware need a C compiler (cc)"
+    assert shutil.which("make"), "the tests of the firmware need make"
+    folder = tmp_path_factory.mktemp("firmware")
+    source = repository / "hardware" / "firmware"
+    made = subprocess.run(
+        ["make", "-C", source, f"BUILD={folder}"], capture_output=True, text=True, check=False
+    )
+    assert made.returncode == 0, made.stderr
+    return folder / "libnode.so"
+
+
+@pytest.fixture
+def power_up(library: Path) -> Callable[..., Firmware]:
+    """Starts a node with what its memory has; the memory of a new one is erased."""
+    return lambda memory=b"\xff" * 32: Firmware(CDLL(str(library)), memory)
