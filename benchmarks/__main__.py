@@ -3,7 +3,19 @@
 import sys
 from importlib import import_module
 
-BENCHMARKS = ("accuracy", "riders", "tick", "video", "kill")
+BENCHMARKS = (
+    "accuracy",
+    "riders",
+    "hess",
+    "tick",
+    "video",
+    "kill",
+    "identify",
+    "throughput",
+    "study",
+    "dask",
+    "bench",
+)
 
 
 def main(names: list[str]) -> int:

@@ -78,7 +78,7 @@ class Info:
 
     def _list_names(self) -> None:
         from bikesim import bicycles
-        from bikesim.rider.settings import rider_names
+        from bikesim.rider.kinds import rider_names
         from bikesim.rig.settings import rig_names
 
         names = {"bicycles": bicycles.names(), "riders": rider_names(), "rigs": rig_names()}

@@ -10,14 +10,19 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from bikesim import __version__
+from bikesim.cli.bench.commands import Bench, parse_bench
 from bikesim.cli.eig import Eig
+from bikesim.cli.experiment import Experiment
 from bikesim.cli.export import Export
+from bikesim.cli.identify import Identify
 from bikesim.cli.info import Info
+from bikesim.cli.margins import Margins
 from bikesim.cli.paper import Paper
 from bikesim.cli.parsing import parse
 from bikesim.cli.plot import Plot
 from bikesim.cli.render import Render
 from bikesim.cli.replay import Replay
+from bikesim.cli.rider import Rider
 from bikesim.cli.run import Run
 from bikesim.cli.surroundings import ended_by_signals, prepare_streams
 from bikesim.errors import InputError
@@ -29,7 +34,12 @@ _DESCRIPTION = (
 
 _COMMANDS = {
     "run": Run,
+    "experiment": Experiment,
+    "identify": Identify,
+    "rider": Rider,
+    "bench": Bench,
     "eig": Eig,
+    "margins": Margins,
     "paper": Paper,
     "render": Render,
     "replay": Replay,
@@ -75,7 +85,11 @@ def _called(arguments: list[str]) -> int:
     if arguments == ["--version"]:
         print(f"bikesim {__version__}")
         return 0
-    command: _Runnable | None = parse(_COMMANDS, arguments, _DESCRIPTION)
+    command: _Runnable | None = (
+        parse_bench(arguments[1:])
+        if arguments[:1] == ["bench"]
+        else parse(_COMMANDS, arguments, _DESCRIPTION)
+    )
     return 0 if command is None else command()
 
 

@@ -3,7 +3,7 @@
 import json
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +19,21 @@ def print_json(value: Any) -> None:
 
 def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) -> None:
     """Columns aligned: the first `left` ones to the left, the others to the right."""
+    for line in table_lines(header, rows, left=left):
+        print(line)
+
+
+def table_lines(
+    header: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1
+) -> Iterator[str]:
+    """The lines of `print_table`."""
     widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
     for row in [header, ["-" * width for width in widths], *rows]:
         cells = [
             cell.ljust(width) if i < left else cell.rjust(width)
             for i, (cell, width) in enumerate(zip(row, widths, strict=True))
         ]
-        print("  ".join(cells).rstrip())
+        yield "  ".join(cells).rstrip()
 
 
 def check_output(path: Path, *, force: bool) -> None:

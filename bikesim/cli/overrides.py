@@ -10,7 +10,7 @@ from bikesim.experiment.scenario import Scenario, read_toml
 if TYPE_CHECKING:
     from bikesim.cli.run import Run
 
-_PLAIN = "bicycle speed law rider rig duration seed gravity period physics_step".split()
+_PLAIN = "bicycle speed law path rider rig duration seed gravity period physics_step".split()
 
 
 def scenario_from(options: "Run") -> Scenario:
@@ -54,8 +54,10 @@ def _says(keys: dict[str, Any], message: str) -> bool:
 def _put(keys: dict[str, Any], path: list[str], value: Any) -> None:
     for name in path[:-1]:
         inner = keys.get(name, {})
-        # A rider or a rig may stand there by its name alone.
-        keys[name] = keys = {"name": inner} if isinstance(inner, str) else dict(inner)
+        if isinstance(inner, str):
+            # A rider or a rig may stand there by its name alone, a path by its kind.
+            inner = {"kind" if name == "path" else "name": inner}
+        keys[name] = keys = dict(inner)
     keys[path[-1]] = value
 
 

@@ -19,14 +19,19 @@ from bikesim.errors import InputError, unknown
 Flag = Annotated[bool, tyro.conf.arg(help_behavior_hint="")]
 
 
-def parse(commands: Mapping[str, type], arguments: Sequence[str], description: str) -> Any:
+def parse(
+    commands: Mapping[str, type],
+    arguments: Sequence[str],
+    description: str,
+    prog: str = "bikesim",
+) -> Any:
     """The command that the arguments ask for, None if they ask for help. Raises InputError."""
     name, rest = (arguments[0], arguments[1:]) if arguments else ("--help", ())
     if name in commands:
-        return _parsed(commands[name], f"bikesim {name}", rest)
+        return _parsed(commands[name], f"{prog} {name}", rest)
     if not name.startswith("-"):
-        raise unknown("command", name, commands)
-    return _parsed(_all_of(commands), "bikesim", arguments or ["--help"], description)
+        raise unknown(f"{prog} command".removeprefix("bikesim "), name, commands)
+    return _parsed(_all_of(commands), prog, arguments or ["--help"], description)
 
 
 def _all_of(commands: Mapping[str, type]) -> Any:

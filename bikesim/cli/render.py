@@ -74,9 +74,12 @@ class Render:
         ),
     ] = None
     no_roll_cue: Flag = False
-    """Keep the horizon level and the bicycle upright: no lean is to be seen."""
+    """Keep the horizon level and the bicycle upright: no lean is to be seen. So it is anyway where
+    the scenario has vision.roll_cue = false."""
+    roll_cue: Flag = False
+    """Show the lean even where the rider did not see it."""
     no_overlay: Flag = False
-    """Only the pictures, nothing written over them."""
+    """Only the pictures: nothing written over them, and no signals under them."""
     at: Annotated[
         float | None, _arg("SECONDS", "Only the frame of this time of the record, as a still.")
     ] = None
@@ -95,6 +98,8 @@ class Render:
             raise InputError("RUN.h5 is missing (bikesim render --help)")
         if self.sheet and (self.at is not None or len(self.records) > 1):
             raise InputError("render --sheet: takes one record, and no --at")
+        if self.roll_cue and self.no_roll_cue:
+            raise InputError("render: --roll-cue or --no-roll-cue, not both")
         if self.at is not None and not math.isfinite(self.at):
             raise InputError(f"--at {self.at}: a time in seconds")
         look, output = self._look(), self._output()
@@ -144,7 +149,7 @@ class Render:
             height,
             Quality(quality),
             overlay=not self.no_overlay,
-            roll_cue=not self.no_roll_cue,
+            roll_cue=None if self.roll_cue == self.no_roll_cue else self.roll_cue,
         )
 
     def _make_still(self, runs: "list[Run]", look: "Look", output: Path, backend: "Backend") -> int:

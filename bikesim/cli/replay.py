@@ -81,8 +81,10 @@ class Replay:
 
             again = ride_again(recording.run)
             figures["ridden_again_rows"] = again.ticks
+            # The guard of a bench saw more than what is in a record.
+            of_bench = recording.run.rig == "bench"
             figures["max_ridden_again_torque_error_N_m"] = max(
-                again.feedback_torque, again.allowed_torque
+                again.feedback_torque, 0.0 if of_bench else again.allowed_torque
             )
         if self.json:
             print_json(figures)

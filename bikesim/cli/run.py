@@ -46,12 +46,22 @@ class Run:
     bicycle: Annotated[str | None, _described("bicycle", "NAME|FILE")] = None
     speed: Annotated[float | None, _described("speed", "M/S")] = None
     law: Annotated[str | None, _described("law", "{paper,momentum,off}")] = None
+    path: Annotated[
+        str | None,
+        _arg(
+            metavar="KIND|FILE",
+            help="The prescribed path: straight, lane-change, double-lane-change, slalom, circle, "
+            "figure-eight, or a CSV file of points; its figures are set with --set "
+            "(default: straight).",
+            help_behavior_hint="",
+        ),
+    ] = None
     rider: Annotated[
         str | None,
         _arg(
-            metavar="NAME",
-            help="human, pd, hands-off, or schwab2013-RUN of an identified run; its figures are "
-            "set with --set (default: human).",
+            metavar="NAME|FILE.py:CLASS",
+            help="A rider by name, as bikesim rider list has them, or a class of your own; its "
+            "figures are set with --set (default: human).",
             help_behavior_hint="",
         ),
     ] = None
@@ -115,10 +125,10 @@ class Run:
 
     def __call__(self) -> int:
         scenario = scenario_from(self)
-        return _ride(self, scenario, self.output or _dated())
+        return _ride(self, scenario, self.output or dated())
 
 
-def _dated() -> Path:
+def dated() -> Path:
     """A name of its own for a record that was given none, also beside others of this second."""
     now = time.time_ns()
     stem = time.strftime("%Y%m%d-%H%M%S", time.localtime(now // 10**9))

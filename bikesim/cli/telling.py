@@ -31,9 +31,11 @@ def summary_told(scenario: Scenario, summary: "Summary", picture: Path | None) -
     law = "haptics off" if scenario.law == "off" else f"law {scenario.law}"
     speed = f"{scenario.speed:g} m/s" if not scenario.speed_profile else "a speed profile"
     ridden = summary.ticks * scenario.period
+    path = "" if scenario.path.kind == "straight" else f", path {_path(scenario)}"
     lines = [
         f"{scenario.bicycle} at {speed}, {law}, "
-        f"rider {scenario.rider.name}, rig {scenario.rig.name}",
+        f"rider {scenario.rider.name}, rig {scenario.rig.name}{path}",
+        *_cues(scenario),
         f"{_ending(summary)} ({ridden:.3f} s, {summary.ticks} ticks)",
         f"rms     roll {math.degrees(summary.rms_roll):.2f} deg, "
         f"steer {math.degrees(summary.rms_steer):.2f} deg, "
@@ -42,6 +44,22 @@ def summary_told(scenario: Scenario, summary: "Summary", picture: Path | None) -
         f"record  {summary.record}",
     ]
     return "\n".join(lines if picture is None else [*lines, f"figure  {picture}"])
+
+
+def _path(scenario: Scenario) -> str:
+    return scenario.path.file or scenario.path.kind
+
+
+def _cues(scenario: Scenario) -> list[str]:
+    """What of the cues is not as usual, in a line; none if nothing is."""
+    usual = Scenario()
+    changed = [
+        f"{table}.{key} = {str(value).lower()}"
+        for table in ("haptics", "vision")
+        for key, value in getattr(scenario, table)
+        if value != getattr(getattr(usual, table), key)
+    ]
+    return [f"cues    {', '.join(changed)}"] if changed else []
 
 
 def _ending(summary: "Summary") -> str:

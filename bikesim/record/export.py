@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
@@ -20,7 +19,7 @@ def export_run(run: Run, path: Path, force: bool = False) -> Path:
     """Write a run as the suffix of `path` says: .csv, .parquet or .mat; returns the path written.
 
     The timing channels follow the others. Raises InputError for an unknown suffix, for a file that
-    is there already (unless `force`) or cannot be written, and for a package that is missing.
+    is there already (unless `force`) or cannot be written.
     """
     write = _writer(path)
     target = output_path(path, force=force)
@@ -43,7 +42,6 @@ def _writer(path: Path) -> Callable[[Run, Path], None]:
         case ".csv":
             return _write_csv
         case ".parquet":
-            _pyarrow()
             return _write_parquet
         case ".mat":
             return _write_mat
@@ -117,13 +115,3 @@ def _about(run: Run) -> dict[str, str]:
     }
     versions = asdict(run.provenance)
     return about | {name: value for name, value in versions.items() if value is not None}
-
-
-def _pyarrow() -> ModuleType:
-    try:
-        import pyarrow
-    except ImportError as error:
-        raise InputError(
-            "Parquet needs pyarrow, which is not installed: pip install 'bikesim[parquet]'"
-        ) from error
-    return pyarrow

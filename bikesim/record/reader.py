@@ -87,10 +87,8 @@ class Run:
 
     def to_pandas(self) -> "pd.DataFrame":
         """A table with a row a tick and a column a channel; units in its `attrs`."""
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise InputError("pandas is not installed: pip install 'bikesim[pandas]'") from error
+        import pandas as pd
+
         table = pd.DataFrame({name: self.channel(name) for name in self.names})
         table.attrs["units"] = {channel.name: channel.unit for channel in self.channels}
         return table

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from bikesim import __version__, bicycles
+from bikesim.experiment.disturbances import Disturbance
 from bikesim.experiment.scenario import Push, Scenario
 from bikesim.record.reader import open_run
 
@@ -35,7 +36,9 @@ def keys_of(model, prefix: str = "") -> set[str]:
 
 def test_keys_lists_every_key_of_a_scenario(cli):
     rows = cli("info", "--keys", "--json").json
-    assert {row["key"] for row in rows} == keys_of(Scenario) | keys_of(Push, "pushes.")
+    disturbances = keys_of(Disturbance, "disturbances.")
+    expected = keys_of(Scenario) | keys_of(Push, "pushes.") | disturbances
+    assert {row["key"] for row in rows} == expected
     assert all(row["meaning"] for row in rows)
 
 

@@ -61,7 +61,7 @@ def test_a_killed_record_is_rendered_as_far_as_it_goes(cli, record: Path):
                 file[f"{group}/{name}"][500:] = float("nan")  # pyright: ignore[reportIndexIssue]
         file.attrs["complete"] = False
     assert cli("render", record, *SMALL).status == 0
-    assert frames(record.with_suffix(".mp4")) == 6
+    assert frames(record.with_suffix(".mp4")) == 6 + 15  # its end stands for 1.5 s
 
 
 def test_ctrl_c_leaves_a_video_that_plays(process, record: Path):
@@ -96,6 +96,7 @@ def test_ctrl_c_leaves_a_video_that_plays(process, record: Path):
         (("--speed", "-1"), "--speed -1: from 0.001"),
         (("--view", "third"), "unknown --view 'third'; known: first, second, bench, both"),
         (("--quality", "high"), "unknown --quality 'high'"),
+        (("--roll-cue", "--no-roll-cue"), "--roll-cue or --no-roll-cue, not both"),
         (("--sheet", "--at", "1"), "render --sheet: takes one record"),
         (("--fps", "60", "-o", "a.gif"), "--fps 60: a GIF has at most 50"),
         (("-o", "run.h5/a.mp4"), "run.h5 is not a folder"),

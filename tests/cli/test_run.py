@@ -2,6 +2,7 @@ import json
 import math
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -186,6 +187,25 @@ def test_a_figure_of_a_named_rider_beside_his_name(cli):
     scenario = open_run("run.h5").scenario
     assert 'name = "pd"' in scenario
     assert "roll_gain = 0.5" in scenario
+
+
+def test_a_path_by_its_kind_and_figures(cli):
+    said = cli("run", "--path", "lane-change", "--set", "path.offset=1.5", *SHORT).out
+    assert said.startswith(
+        "benchmark at 3.5 m/s, law paper, rider human, rig ideal, path lane-change\n"
+    )
+    assert "offset = 1.5\n" in open_run("run.h5").scenario
+
+
+def test_a_path_from_a_file(cli):
+    Path("track.csv").write_text("x,y\n0,0\n8,0\n16,1\n30,1\n")
+    assert ", path track.csv\n" in cli("run", "--path", "track.csv", *SHORT).out
+
+
+def test_cues_that_are_not_as_usual_are_told(cli):
+    said = cli("run", "--set", "haptics.delay=0.05", "--set", "vision.roll_cue=false", *SHORT).out
+    assert "\ncues    haptics.delay = 0.05, vision.roll_cue = false\n" in said
+    assert "cues" not in cli("run", *SHORT, "--force").out
 
 
 def test_a_rig_of_another_inertia_is_named_with_what_it_does(cli):

@@ -1,6 +1,5 @@
 import csv
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -63,12 +62,6 @@ class TestParquet:
         assert metadata[b"unit"] == b"rad"
         assert metadata[b"sign"] == b"> 0 leans right"
         assert schema.metadata[b"scenario"].decode() == run.scenario
-
-    def test_without_pyarrow_names_the_extra(self, run, tmp_path: Path, monkeypatch):
-        monkeypatch.setitem(sys.modules, "pyarrow", None)
-        with pytest.raises(InputError, match=r"pip install 'bikesim\[parquet\]'"):
-            export_run(run, tmp_path / "a.parquet")
-        assert not (tmp_path / "a.parquet").exists()
 
 
 class TestMat:

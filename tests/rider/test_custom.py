@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 from bikesim.errors import InputError
+from bikesim.experiment.batch import batch_key, ride_batch
 from bikesim.experiment.run import build, ride_parts
-from bikesim.experiment.scenario import Scenario, read_toml
+from bikesim.experiment.scenario import Scenario, StartSettings, read_toml
 from bikesim.model.haptic import BicycleState
+from bikesim.record.channels import TICK_CHANNELS
 from bikesim.rider.base import Rider
 from bikesim.rider.custom import class_figures, load_class
 from bikesim.rider.kinds import beside
 from bikesim.rider.settings import RiderSettings
 
+ROLL = [channel.name for channel in TICK_CHANNELS].index("roll")
 THEIRS = """
 from __future__ import annotations
 import dataclasses
@@ -225,3 +228,24 @@ def test_a_run_with_him_ends_with_his_line(theirs: Path):
 
     with pytest.raises(InputError, match=r"raised ZeroDivisionError at 0.0505 s"):
         ride_parts(parts, Nowhere())
+
+
+def test_a_batch_has_him_with_several_figures(theirs: Path):
+    del theirs
+    scenarios = [
+        Scenario(
+            rider=RiderSettings(name="theirs.py:Mine", figures=figures, arm_damping=3.0),
+            start=StartSettings(roll_deg=2.0),
+            duration=0.5,
+        )
+        for figures in ({"gain": 3.0}, {}, {"gain": 5.0, "steps": 2.0})
+    ]
+    assert len({batch_key(one) for one in scenarios}) == 1
+    for scenario, outcome in zip(scenarios, ride_batch(scenarios), strict=True):
+        rows: list[tuple[float, ...]] = []
+
+        class Rows:
+            append = staticmethod(rows.append)
+
+        ride_parts(build(scenario), Rows())
+        assert outcome.history.roll.tolist() == [row[ROLL] for row in rows][::10]

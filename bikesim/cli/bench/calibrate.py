@@ -1,0 +1,139 @@
+"""bikesim bench calibrate"""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from bikesim.cli.bench.identify import ask
+from bikesim.cli.bench.options import BenchName, arg
+from bikesim.cli.output import print_table
+from bikesim.cli.parsing import Flag
+from bikesim.errors import InputError
+
+if TYPE_CHECKING:
+    from bikesim.bench.calibrate import Calibrated
+    from bikesim.bench.calibration import NodeCalibration
+    from bikesim.bench.profile import BenchSettings
+
+
+@dataclass(frozen=True)
+class Calibrate:
+    """Zero, angle scale and gyro scale of this bench's steer sensors, from a few held positions.
+
+    You turn the bar to each position, by a protractor on it, then swing it. With the emergency stop
+    pressed; the calibration goes into the sensor node. Of a bench whose steer is the drive's
+    encoder the zero goes into the profile, which must be a .toml file of yours.
+    """
+
+    bench: BenchName
+    positions: Annotated[
+        str, arg("DEG,DEG,...", "To hold the bar at, right positive (default: -30,0,30).")
+    ] = "-30,0,30"
+    anew: Flag = False
+    """These are other sensors than those the node was calibrated for: any scale, either sign."""
+    yes: Flag = False
+    """Store without asking."""
+
+    def __call__(self) -> int:
+        from bikesim.bench.profile import load_bench
+
+        positions = parse_positions(self.positions)
+        bench = load_bench(self.bench)
+        if bench.bar.source == "drive":
+            return self._encoder(bench, positions)
+        return self._node(bench, positions)
+
+    def _node(self, bench: "BenchSettings", positions: list[float]) -> int:
+        from bikesim.bench.calibrate_bench import NodeCalibrator, on_node_bus
+
+        bus, link = on_node_bus(bench)
+        try:
+            calibrator = NodeCalibrator(link, _asked)
+            old = calibrator.acting
+            found = calibrator.measure(positions, anew=self.anew)
+            _tell(old, found)
+            if not self._agreed("store it in the sensor node"):
+                return 0
+            kept = _keep(self.bench, old)
+            calibrator.store(found.calibration)
+        finally:
+            bus.shutdown()
+        print(f"stored in the node; as it was: {kept}")
+        return 0
+
+    def _encoder(self, bench: "BenchSettings", positions: list[float]) -> int:
+        from bikesim.bench.calibrate import encoder_zero
+        from bikesim.bench.calibrate_bench import encoder_angle
+        from bikesim.bench.profile_file import change_profile, own_profile
+
+        path = own_profile(self.bench)
+        held = []
+        for angle in positions:
+            _asked(f"turn the bar to {math.degrees(angle):+g} deg and hold it;")
+            held.append((angle, encoder_angle(bench)))
+        zero = round(encoder_zero(held), 5)
+        print(f"drive_zero  {zero:g} rad (profile: {bench.bar.drive_zero:g})")
+        if not self._agreed(f"write it into {path}"):
+            return 0
+        kept = change_profile(path, {"bar.drive_zero": zero})
+        print(f"written to {path}; as it was: {kept}")
+        return 0
+
+    def _agreed(self, what: str) -> bool:
+        if self.yes or ask(f"{what}? [y/N]").lower() in ("y", "yes"):
+            return True
+        print("nothing was changed")
+        return False
+
+
+def parse_positions(text: str) -> list[float]:
+    """ "-30,0,30" in radians. Raises InputError."""
+    try:
+        degrees = [float(part) for part in text.split(",")]
+    except ValueError:
+        degrees = []
+    if len(set(degrees)) < 2 or not all(abs(one) < 90 for one in degrees):
+        raise InputError(
+            f"--positions {text}: must be two or more angles between -90 and 90 deg (-30,0,30)"
+        )
+    return [math.radians(one) for one in degrees]
+
+
+def _asked(question: str) -> str:
+    return ask(f"{question} then Enter")
+
+
+def _tell(old: "NodeCalibration", found: "Calibrated") -> None:
+    new = found.calibration
+    rows = [
+        [name, f"{getattr(old, key):.5g}", f"{getattr(new, key):.5g}", unit]
+        for name, key, unit in (
+            ("potentiometer, straight ahead", "pot_zero", "of its range"),
+            ("angle scale", "angle_scale", "rad over the range"),
+            ("gyro, at rest", "gyro_zero", "of its range"),
+            ("rate scale", "rate_scale", "rad/s over the range"),
+        )
+    ]
+    print_table(["", "in the node", "found", ""], rows, left=1)
+    print(
+        f"positions within {math.degrees(found.off_line):.2f} deg of a line; the gyro's integral "
+        f"within {100 * found.swing_misfit:.1f} % of the angle"
+    )
+
+
+def _keep(name: str, old: "NodeCalibration") -> Path:
+    """The node's calibration as it was, in a file beside the profile, or here."""
+    from bikesim.bench.profile_file import kept_beside
+
+    path = Path(name)
+    beside = path if path.suffix == ".toml" else Path(f"{path.name}.toml")
+    kept = kept_beside(beside.with_suffix(".node"))
+    lines = [f"{key} = {value!r}" for key, value in old._asdict().items()]
+    try:
+        kept.write_text(
+            "# In the sensor node before it was calibrated.\n" + "\n".join(lines) + "\n"
+        )
+    except OSError as error:
+        raise InputError(f"{kept}: {(error.strerror or str(error)).lower()}") from None
+    return kept

@@ -1,0 +1,132 @@
+"""bikesim bench run"""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from bikesim.cli.bench.options import BenchName, arg
+from bikesim.cli.output import check_apart, check_output, print_json
+from bikesim.cli.overrides import scenario_from
+from bikesim.cli.parsing import Flag
+from bikesim.cli.run import Run as VirtualRun
+from bikesim.cli.run import dated
+from bikesim.errors import InputError
+
+if TYPE_CHECKING:
+    from bikesim.record.reader import Run as Record
+
+
+@dataclass(frozen=True)
+class Run:
+    """Ride on a bench: arm, ramp in, ride, ramp out, disable; recorded as in the virtual rig.
+
+    The keys of a scenario are those of bikesim run; rig and rider are the bench and who holds its
+    bar. Ctrl-C ramps the torque out in 0.1 s; a second one ends it at once. Whatever ends the ride,
+    the drive is disabled; what is not in this program's power (a cut cable, a killed process) the
+    drive's own watchdog does, and the emergency stop is the hardware's.
+    """
+
+    bench: BenchName
+    scenario: Annotated[Path | None, arg("FILE.toml", "A scenario file.")] = None
+    bicycle: Annotated[str | None, arg("NAME|FILE", "A bicycle (default: benchmark).")] = None
+    speed: Annotated[float | None, arg("M/S", "Without a speed sensor (default: 3.5).")] = None
+    law: Annotated[
+        str | None, arg("{paper,momentum,off}", "Of the feedback torque (default: paper).")
+    ] = None
+    path: Annotated[str | None, arg("KIND|FILE", "The prescribed path (default: straight).")] = None
+    duration: Annotated[float | None, arg("S", "Of the ride [s] (default: 30).")] = None
+    set: Annotated[
+        tyro.conf.UseAppendAction[tuple[str, ...]],
+        arg("KEY=VALUE", "Any other key of a scenario, as for bikesim run."),
+    ] = ()
+    output: Annotated[
+        Path | None, arg("FILE.h5", "The record (default: runs/ with date and time).", "-o")
+    ] = None
+    force: Flag = False
+    """Replace a record that is there already."""
+    no_frames: Flag = False
+    """Do not keep the raw frames of the bus (else beside the record, .blf)."""
+    pulse: Flag = False
+    """A commissioning pulse first (at most 0.3 N m): hands off the bar until it is over."""
+    uncommissioned: Flag = False
+    """Ride though this bar and drive never passed the commissioning pulse."""
+    without_margin: tyro.conf.UseCounterAction[int] = 0
+    """Given twice: ride at a speed at which the loop has no margin."""
+    report: Flag = False
+    """Lateness and compute time of the ticks at the end: percentiles, a histogram, a figure."""
+    json: Flag = False
+    """Print the summary as JSON."""
+
+    def __call__(self) -> int:
+        from bikesim.bench.profile import load_bench
+        from bikesim.bench.ride import Order, run_bench
+        from bikesim.bench.scenario import bench_scenario
+        from bikesim.record.reader import open_run
+
+        bench = load_bench(self.bench)
+        output = self.output or dated()
+        frames = None if self.no_frames else output.with_suffix(".blf")
+        picture = output.with_name(f"{output.stem}-timing.png") if self.report else None
+        check_apart(output, *filter(None, (self.scenario, frames, picture)))
+        for path in filter(None, (frames, picture)):
+            check_output(path, force=self.force)
+        order = Order(
+            self.bench,
+            bench,
+            bench_scenario(bench, scenario_from(self._as_virtual())),
+            self.pulse,
+            self.uncommissioned,
+            self.without_margin,
+            frames,
+        )
+        say = _to_stderr if self.json else _told
+        run_bench(order, output, force=self.force, say=say)
+        return self._end(open_run(output), picture)
+
+    def _as_virtual(self) -> VirtualRun:
+        return VirtualRun(
+            scenario=self.scenario,
+            bicycle=self.bicycle,
+            speed=self.speed,
+            law=self.law,
+            path=self.path,
+            duration=self.duration,
+            set=self.set,
+        )
+
+    def _end(self, record: "Record", picture: Path | None) -> int:
+        from bikesim.bench.report import timing_json, timing_report, timing_told
+        from bikesim.cli.telling import summary_json
+        from bikesim.experiment.summary import summarise
+
+        if not record.ticks:
+            raise InputError(f"{record.path}: the ride ended before its first tick")
+        summary, timing = summarise(record), timing_report(record)
+        if picture is not None:
+            from bikesim.bench.report import timing_figure
+            from bikesim.report.style import save
+
+            save(timing_figure(record, timing), picture)
+        if self.json:
+            print_json({**summary_json(summary), "timing": timing_json(timing)})
+        else:
+            print(f"ended    {summary.reason}, at {float(record.time[-1]):.2f} s")
+            for line in timing_told(timing, histogram=self.report):
+                print(line)
+            print(f"record   {record.path}")
+            if picture is not None:
+                print(f"figure   {picture}")
+        if summary.reason.startswith("fault"):
+            raise InputError(f"{summary.reason}; kept: {summary.record}")
+        return 0
+
+
+def _told(line: str) -> None:
+    print(line, flush=True)
+
+
+def _to_stderr(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)
