@@ -43,7 +43,12 @@ TICK_CHANNELS = (
     Channel("feedback_torque", "N m", "> 0 turns right", "T_f of eq. 6 as the law gave it"),
     Channel("allowed_torque", "N m", "> 0 turns right", "feedback torque after the guard"),
     Channel("sent_torque", "N m", "> 0 turns right", "torque that the rig says it sent"),
-    Channel("limited", "1", "bit mask", "what the guard did: 1 clamped, 2 slewed, 4 refused"),
+    Channel(
+        "limited",
+        "1",
+        "bit mask",
+        "what the guard did: 1 clamped, 2 slewed, 4 refused; a bench: more, docs/bench.md",
+    ),
 )
 
 # Measured on this machine in this run: never the same twice, so kept apart.
