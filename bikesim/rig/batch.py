@@ -61,9 +61,8 @@ class BatchRig:
         self._substeps = whole_steps(period, step)
         self.info = RigInfo(name, period, inertia, settings.steer_stop, VIRTUAL_CHANNELS)
         self._model_with = partial(
-            rig_model, settings, inertia=inertia, steer_axis_tilt=steer_axis_tilt, step=step,
-            drawn=False,
-        )  # fmt: skip
+            rig_model, settings, inertia=inertia, steer_axis_tilt=steer_axis_tilt, step=step
+        )
         self._rider, self._riding, self._rigs = rider, riding, len(randoms)
         self._arms = rider.arms
         models = self._models()

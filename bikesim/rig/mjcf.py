@@ -28,13 +28,13 @@ def rig_model(
     arms: Arms,
     steer_axis_tilt: float,
     step: float,
-    drawn: bool = True,
+    drawn: bool = False,
 ) -> mujoco.MjModel:
     """The compiled model of a rig. It is kept for who asks again: not to be changed.
 
     `inertia` I_δ [kg m²] is the total about the steer axis without the arms, motor rotor included;
     `arms` come on top of it. `steer_axis_tilt` [rad] of the bicycle, `step` [s] of the physics.
-    Not `drawn`, it has the mechanism alone: the same motion, bit for bit, in less time.
+    It has the mechanism alone unless `drawn`: the same motion, bit for bit, in less time.
     """
     if settings.rotor_inertia >= inertia:
         raise InputError(
@@ -70,7 +70,8 @@ def rig_model(
 
 
 def _undress(spec: mujoco.MjSpec) -> None:
-    for part in (*spec.geoms, *spec.cameras, *spec.lights, spec.body("display")):
+    drawing = (*spec.geoms, *spec.cameras, *spec.lights, spec.body("display"))
+    for part in (*drawing, *spec.meshes, *spec.materials, *spec.textures):
         spec.delete(part)
 
 

@@ -123,9 +123,9 @@ def test_it_closes_at_zero_torque(upright: BicycleState):
 
 def test_the_undrawn_model_has_no_drawing_and_the_same_mechanism():
     makes = {"inertia": 0.25, "arms": Arms(0.1, 1, 2), "steer_axis_tilt": 0.3, "step": 5e-4}
-    drawn = rig_model(RigSettings(), **makes)
-    bare = rig_model(RigSettings(), **makes, drawn=False)
-    assert (bare.ngeom, bare.ncam, bare.nlight) == (0, 0, 0)
+    drawn = rig_model(RigSettings(), **makes, drawn=True)
+    bare = rig_model(RigSettings(), **makes)
+    assert (bare.ngeom, bare.ncam, bare.nlight, bare.ntex) == (0, 0, 0, 0)
     assert drawn.ngeom > 10
     for model in (drawn, bare):
         data = mujoco.MjData(model)
