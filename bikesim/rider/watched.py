@@ -41,7 +41,7 @@ class _Watch:
             return self._brain_intends(steer, steer_rate, seen)
         except InputError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             _refuse(self._name, error, self._when())
 
     def _wrong(self, what: str, must: str) -> InputError:

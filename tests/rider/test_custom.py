@@ -48,6 +48,9 @@ class Nan(Mine):
 class Nothing(Mine):
     def torque(self, seen):
         return None
+class Exits(Mine):
+    def torque(self, seen):
+        raise SystemExit(0)
 class Text(Mine):
     def torque(self, seen):
         return "left"
@@ -122,6 +125,7 @@ def test_one_by_one_in_a_batch_when_he_says_so(theirs: Path, make_many, seen):
 WRONG = (
     ("Raises", "raised ZeroDivisionError at 0.0505 s (theirs.py, line 23): division by zero", ""),
     ("Nan", "gave nan at 0.0505 s: must be a finite number", "gave nan for rider 1 of 3 at 0.0505"),
+    ("Exits", "raised SystemExit at 0.0505 s (theirs.py, line 32): 0", ""),
     ("Nothing", "gave None at 0.0505 s: must be a finite number", "gave None at 0.0505 s: must be"),
     ("Text", "gave 'left' at 0.0505 s: must be a finite number", "gave 'left' at 0.0505 s: must"),
     ("Shape", "gave an array of shape (7,) at 0.0505 s: must be", "of shape (7,) at 0.0505 s: mus"),

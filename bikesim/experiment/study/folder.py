@@ -37,9 +37,10 @@ if TYPE_CHECKING:
 
 PARTS, RECORDS, VIDEOS = "parts", "records", "videos"
 _LOCK = ".lock"
+# The manifest last: a folder that is half emptied is still known as one of ours.
 _OURS = (
-    MANIFEST, EXPERIMENT, RESULTS, TABLE, PARTS, RECORDS, VIDEOS,
-    "report.html", "statistics.json", "figures",
+    EXPERIMENT, RESULTS, TABLE, PARTS, RECORDS, VIDEOS,
+    "report.html", "statistics.json", "figures", MANIFEST,
 )  # fmt: skip
 
 

@@ -100,8 +100,8 @@ class Experiment(Settings):
             return given
         if isinstance(given, bool) or not isinstance(given, int):
             raise ValueError("must be how many (50), or a list of them ([1, 2, 3])")
-        if given > 10**9:
-            raise ValueError(f"{given} are too many")
+        if given > 10**7:  # before they are made
+            raise ValueError(f"{given} are too many: at most {10**7}")
         return tuple(range(1, given + 1))
 
     @model_validator(mode="after")

@@ -108,12 +108,14 @@ def _ride(order: Ride, report: Report) -> Done:
     ids = order.batch.runs
     scenarios = [scenario_of(order.scenarios[run.condition], run.seed) for run in ids]
     outcomes = ride_batch(scenarios, Pulse(scenarios[0].ticks, report))
+    if any(outcome.ending.reason == "interrupted" for outcome in outcomes):
+        # Those that ended before the others are the falls: a rate of them would be a false one.
+        return Done((), (), started, time.perf_counter() - began)
     ended = [
         (Result(run, outcome.ending.reason, outcome.history.ticks), measure(outcome.history, one))
         for run, outcome, one in zip(ids, outcomes, scenarios, strict=True)
-        if outcome.ending.reason != "interrupted"
     ]
-    results, metrics = zip(*ended, strict=True) if ended else ((), ())
+    results, metrics = zip(*ended, strict=True)
     return Done(results, metrics, started, time.perf_counter() - began)
 
 

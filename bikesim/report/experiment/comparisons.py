@@ -22,9 +22,11 @@ def comparisons(
 ) -> tuple[Comparison, ...]:
     """One for each pair of conditions that differ in these levels and in nothing else.
 
-    Where nothing is asked: the first level of each factor with each other, factor by factor as
-    long as there are no more than MOST.
+    Of the grid alone: a condition beside it may differ in more than its levels say. Where nothing
+    is asked: the first level of each factor with each other, factor by factor as long as there are
+    no more than MOST.
     """
+    conditions = [one for one in conditions if not one.beside]
     if asked:
         return tuple(made for one in asked for made in _made(one, factors, conditions))
     found: list[Comparison] = []

@@ -40,10 +40,11 @@ class Factor(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """One cell of the grid: its name, and the level of each factor."""
+    """One cell of the grid, or one `beside` it: its name, and the level of each factor."""
 
     name: str
     levels: tuple[Any, ...]
+    beside: bool = False
 
 
 class Comparison(NamedTuple):

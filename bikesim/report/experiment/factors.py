@@ -1,6 +1,7 @@
 """What each factor does to falling, all runs together: a regression."""
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -31,11 +32,14 @@ class Regression(NamedTuple):
 
 
 def regression(data: Data) -> Regression:
-    """Main effects of all factors; each level against the first of its factor."""
+    """Main effects of all factors over the grid; each level against the first of its factor."""
+    data = _of_grid(data)
     fell = data.table["fell"].to_numpy(np.float64) > 0
     factors = [factor for factor in data.factors if len(factor.levels) > 1]
     if not factors:
         return Regression(None, None, (), (), "no factor has more than one level")
+    if not len(fell):
+        return Regression(None, None, (), (), "no condition of the grid was ridden")
     if fell.all() or not fell.any():
         what = "every run" if fell.all() else "no run"
         return Regression(None, None, (), (), f"{what} fell, so no factor makes a difference")
@@ -44,6 +48,13 @@ def regression(data: Data) -> Regression:
     model = logistic_regression(design, fell, names)
     reference = tuple((factor.label, shown(factor.levels[0])) for factor in factors)
     return Regression(model, _fit(data, model, design), reference, left_out)
+
+
+def _of_grid(data: Data) -> Data:
+    """Without the conditions beside the grid, which have no level of some factor."""
+    grid = tuple(one for one in data.conditions if not one.beside)
+    rows = data.table["condition"].isin([one.name for one in grid])
+    return replace(data, conditions=grid, table=data.table[rows].reset_index(drop=True))
 
 
 def _columns(data: Data, factor: Factor) -> list[tuple[str, NDArray[np.float64]]]:

@@ -17,8 +17,11 @@ def read_data(folder: Path) -> Data:
     experiment, table = results.study.experiment, results.table
     factors = tuple(_factor(one) for one in results.study.factors)
     there = set(table["condition"])
+    beside = {one.name for one in experiment.conditions}
     conditions = tuple(
-        Condition(one.name, one.values) for one in results.study.conditions if one.name in there
+        Condition(one.name, one.values, one.name in beside)
+        for one in results.study.conditions
+        if one.name in there
     )
     asked = [Asked(one.factor, *one.levels) for one in experiment.report.contrasts]
     return Data(

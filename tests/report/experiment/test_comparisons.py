@@ -46,3 +46,10 @@ def test_an_extra_condition_is_compared_with_none(data: Data, level):
     extra = Condition("extra", (level, True, 2.5))
     made = comparisons((), data.factors, (*data.conditions, extra))
     assert made == data.comparisons
+
+
+def test_a_condition_beside_the_grid_takes_no_cell_of_it(data: Data):
+    """One that sets other keys has the levels of a cell all the same."""
+    extra = Condition("a hard start", data.conditions[0].levels, beside=True)
+    made = comparisons((), data.factors, (*data.conditions, extra))
+    assert made == data.comparisons
