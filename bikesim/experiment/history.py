@@ -17,8 +17,8 @@ HIGHEST_RATE = 100.0
 
 # The channels of a record that a history has; those of the virtual rig are NaN where there is none.
 SIGNALS = (
-    "time", "steer", "steer_rate", "speed", "roll", "roll_rate", "heading", "x", "y",
-    "feedback_torque", "sent_torque", "rider_torque", "roll_moment", "steer_moment",
+    "time", "steer", "steer_rate", "true_steer_rate", "speed", "roll", "roll_rate", "heading",
+    "x", "y", "feedback_torque", "sent_torque", "rider_torque", "roll_moment", "steer_moment",
 )  # fmt: skip
 
 
@@ -28,7 +28,8 @@ class History:
 
     Every `every`-th tick, the first included, unfiltered; `period` [s] lies between two samples.
     `ticks` were ridden in all, the last of them after the last sample or at it.
-    `planned_duration` [s] is what the scenario asked for.
+    `planned_duration` [s] is what the scenario asked for. A bench knows no steer rate but the
+    measured one, which then stands for `true_steer_rate` too.
     """
 
     period: float
@@ -39,6 +40,7 @@ class History:
     time: NDArray[np.float64]
     steer: NDArray[np.float64]
     steer_rate: NDArray[np.float64]
+    true_steer_rate: NDArray[np.float64]
     speed: NDArray[np.float64]
     roll: NDArray[np.float64]
     roll_rate: NDArray[np.float64]
@@ -65,6 +67,8 @@ class History:
         missing = np.full(run.ticks, np.nan)
         known = set(run.names)
         values = {n: (run.channel(n) if n in known else missing)[::every] for n in SIGNALS}
+        if "true_steer_rate" not in known:
+            values["true_steer_rate"] = values["steer_rate"]
         return cls(
             period=every * run.period,
             every=every,
@@ -78,6 +82,11 @@ class History:
 def stride(period: float) -> int:
     """Ticks of `period` [s] from one sample to the next: the fewest that keep HIGHEST_RATE."""
     return max(1, math.ceil(1 / (HIGHEST_RATE * period) - 1e-9))
+
+
+def history_bytes(duration: float, period: float) -> int:
+    """Of the signals of a run of a duration [s] with ticks of `period` [s]."""
+    return 8 * len(SIGNALS) * math.ceil(duration / (stride(period) * period))
 
 
 def _planned(run: "Run") -> float:

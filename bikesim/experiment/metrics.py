@@ -65,7 +65,7 @@ def measure(history: History, scenario: Scenario) -> Metrics:
     """The metrics of a run of a scenario; a run has at least one tick."""
     ending, duration = history.ending, history.duration
     lateral = deviations(history, make_path(scenario.path))
-    net, positive = work(history.rider_torque, history.steer_rate, history.period)
+    net, positive = work(history.rider_torque, history.true_steer_rate, history.period)
     spectrum = _torque_spectrum(history.rider_torque, history.period)
     loop = loop_margins(history, scenario)
     return Metrics(

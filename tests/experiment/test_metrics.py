@@ -82,7 +82,8 @@ def test_reversals_and_work(made_up):
         made_up(
             10,
             steer=lambda t: 0.05 * np.sin(2 * np.pi * t),
-            steer_rate=lambda t: 0.1 * np.pi * np.cos(2 * np.pi * t),
+            steer_rate=lambda t: 0.1 * np.pi * np.sin(2 * np.pi * t),  # late: of no account
+            true_steer_rate=lambda t: 0.1 * np.pi * np.cos(2 * np.pi * t),
             rider_torque=lambda t: np.cos(2 * np.pi * t),
         ),
         PLAIN,

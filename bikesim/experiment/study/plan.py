@@ -2,13 +2,14 @@
 
 import math
 import re
-from collections.abc import Hashable, Iterator, Set
+from collections.abc import Hashable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 from bikesim.errors import InputError
+from bikesim.experiment.history import history_bytes
 from bikesim.experiment.study.factors import Factor, make_factors
 from bikesim.experiment.study.grid import Condition, count_conditions, make_conditions
 from bikesim.experiment.study.settings import Contrast, Experiment
@@ -74,6 +75,8 @@ class Study:
     def batches(self, done: Set[RunId], size: int, workers: int) -> Iterator[Batch]:
         """The runs that are not done, at most `size` a batch, alike for all workers if they can.
 
+        Of long runs fewer: a batch keeps the signals of its runs in memory.
+
         What a run gives does not depend on the batch that it is in; how long it takes does.
         """
         number = 0
@@ -86,9 +89,18 @@ class Study:
             ]
             # Many groups keep all workers busy as they are.
             share = workers if len(self.groups) < 4 * workers else 1
-            for first, last in _shares(len(ids), size, share):
+            for first, last in _shares(len(ids), min(size, _that_fit(group)), share):
                 number += 1
                 yield Batch(number, tuple(ids[first:last]))
+
+
+def _that_fit(group: Sequence[Condition]) -> int:
+    """How many runs of these conditions a batch has memory for; at least one."""
+    longest = max(history_bytes(one.scenario.duration, one.scenario.period) for one in group)
+    return max(1, _BATCH_MEMORY // longest)
+
+
+_BATCH_MEMORY = 512 * 2**20  # bytes of signals: 711 runs of 60 s
 
 
 def make_study(experiment: Experiment) -> Study:
