@@ -9,6 +9,9 @@ unexport PYTHONPATH PYTHONHOME
 export TMPDIR := $(shell cd "$${TMPDIR:-/tmp}" 2>/dev/null && [ -w . ] && pwd || echo /tmp)
 
 PY := .venv/bin/python
+
+# A monitor that is not there, and what a window needs on it; for tests.
+SCREEN := xvfb libx11-6 libxcursor1 libxi6 libxinerama1 libxrandr2
 READY := .venv/ready
 
 .PHONY: run test check lint types format bench gallery lock gl clean
@@ -17,6 +20,7 @@ run: $(READY)
 	$(PY) -m bikesim run --output runs/first.h5 --force --figure --video
 
 test: $(READY)
+	@bash scripts/apt.sh $(SCREEN) || echo "test: without them the tests of the live display fail" >&2
 	$(PY) -m pytest --numprocesses auto --maxprocesses 4 $(ARGS)
 
 check: lint types

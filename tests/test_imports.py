@@ -40,14 +40,14 @@ ALLOWED = {
     "experiment": BASE | PARTS,
     "report": BASE | PARTS | {"experiment", "identify", "bench"},
     "bench": BASE | PARTS | {"realtime", "experiment"},
-    "view": BASE | {"model", "bicycles", "path", "record", "rig"},
+    "view": BASE | {"model", "bicycles", "path", "record", "rig", "bench"},
     "cli": BASE | PARTS | {"experiment", "identify", "bench", "report", "view"},
     "__main__": {"cli"},
     "__init__": set[str](),
 }
 
 HEAVY = {
-    "numpy", "scipy", "mujoco", "cv2", "matplotlib", "h5py", "pandas", "pyarrow", "av",
+    "numpy", "scipy", "mujoco", "glfw", "cv2", "matplotlib", "h5py", "pandas", "pyarrow", "av",
     "dask", "distributed", "statsmodels", "jinja2", "can", "cantools", "canopen", "msgpack",
 }  # fmt: skip
 

@@ -3,12 +3,13 @@
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from bikesim.bench.arm import arm, listen
-from bikesim.bench.bus import BusPort, filter_for, open_bus
+from bikesim.bench.bus import BusPort, close_bus, filter_for, open_bus
 from bikesim.bench.display import Screen, screen_name
 from bikesim.bench.drive import Drive
 from bikesim.bench.drives import make_drive
@@ -21,6 +22,7 @@ from bikesim.bench.recorder import ThreadedRecorder
 from bikesim.bench.rig import BENCH_CHANNELS, BenchRig, Clock, Port
 from bikesim.bench.scenario import header_text
 from bikesim.bench.senses import Bar, DriveBar, NodeBar
+from bikesim.bench.showing import showing_of
 from bikesim.bench.stopping import Stopping
 from bikesim.bench.wheel_course import Wheel, WheelCourse, WheelSilent
 from bikesim.clock import RealTimeClock
@@ -36,10 +38,15 @@ from bikesim.record.provenance import Provenance
 from bikesim.record.writer import RunWriter
 from bikesim.rig.base import RigInfo
 
+if TYPE_CHECKING:
+    import can
+
 Say = Callable[[str], object]
 
 # How long another thread may keep the interpreter from the loop [s]; Python's own is 5 ms.
 _SWITCH_INTERVAL = 5e-5
+
+_NO_DISPLAY = nullcontext()
 
 
 @dataclass(frozen=True)
@@ -81,7 +88,6 @@ class Parts:
             clock=clock,
             late=bench.thresholds.late_most,
             others=() if self.wheel is None else (self.wheel,),
-            host_ids=frozenset() if bench.bus.echoes else drive.host_ids,
         )
 
     def arm(self) -> None:
@@ -120,10 +126,21 @@ def check_order(order: Order) -> Preflight:
     return ready
 
 
-def run_bench(order: Order, output: Path, *, force: bool = False, say: Say = print) -> Ending:
-    """Arm, ramp in, ride, ramp out, disable; recorded in `output`. Raises InputError."""
+def run_bench(
+    order: Order,
+    output: Path,
+    *,
+    force: bool = False,
+    say: Say = print,
+    display: AbstractContextManager[object] = _NO_DISPLAY,
+) -> Ending:
+    """Arm, ramp in, ride, ramp out, disable; recorded in `output`. Raises InputError.
+
+    `display` is entered when there is something to look at, before anything is on the bus.
+    """
     ready = check_order(order)
     bench = order.bench
+    showing = showing_of(bench, order.scenario, ready.bicycle)
     header = RunHeader(
         scenario=header_text(bench, order.scenario),
         bicycle=ready.bicycle,
@@ -136,8 +153,9 @@ def run_bench(order: Order, output: Path, *, force: bool = False, say: Say = pri
     )
     drive = make_drive(bench.drive)
     with (
+        Screen(screen_name(bench.bus), showing.to_text()) as screen,
+        display,
         on_the_bus(bench, drive, say) as bus,
-        Screen(screen_name(bench.bus)) as screen,
         RunWriter(
             output,
             channels=(*TICK_CHANNELS, *BENCH_CHANNELS),
@@ -151,7 +169,7 @@ def run_bench(order: Order, output: Path, *, force: bool = False, say: Say = pri
         with real_time() as granted, recorder, _prompt_threads():
             for line in told(ready, granted):
                 say(line)
-            port = BusPort(bus, wanted_ids(bench, drive), recorder.log)
+            port = loop_port(bus, bench, drive, recorder.log)
             parts = Parts(bench, drive, port, RealTimeClock(bench.period))
             try:
                 ridden = Ride(order, ready, parts, recorder, [recorder.failed])
@@ -167,13 +185,17 @@ def run_bench(order: Order, output: Path, *, force: bool = False, say: Say = pri
 def _armed_ride(ridden: "Ride", screen: Screen, say: Say) -> Ending:
     """Nothing here may take long: the drive listens for its host."""
     parts, order = ridden.parts, ridden.order
+    screen.say("the drive is being armed")
     say(f"arming   {parts.drive.name}; its torque will ramp in over {ridden.ramp_in:g} s")
     parts.arm()
+    if order.pulse:
+        screen.say("commissioning pulse: hands off the bar")
     pulse = parts.pulse() if order.pulse else None
     parts.rig.hooks = parts.rig.hooks._replace(show=screen.show)
     stopping = Stopping(ridden.guard.ask_to_stop)
     with stopping.watching():
         ending = ridden.go(stopping)
+    screen.say(ending.reason)
     if pulse is not None:
         say(pulse)
     return ending
@@ -255,14 +277,19 @@ def on_the_bus(bench: BenchSettings, drive: Drive, say: Say = print) -> Iterator
         filter_for(bus, None)
         yield bus
     finally:
-        bus.shutdown()
+        close_bus(bus)
 
 
-def wanted_ids(bench: BenchSettings, drive: Drive) -> frozenset[int]:
-    """Of all that is on the bus: what the loop takes, a second master's frames where it can."""
+def loop_port(
+    bus: "can.BusABC",
+    bench: BenchSettings,
+    drive: Drive,
+    log: "Callable[[can.Message, float | None], object] | None" = None,
+) -> BusPort:
+    """Takes what the loop needs of all that is on the bus, and a second master's frames."""
     wheel = frozenset[int]() if bench.wheel is None else Wheel(bench.wheel).ids
-    others = frozenset[int]() if bench.bus.echoes else drive.host_ids
-    return make_bar(bench, drive).ids | drive.ids | wheel | others
+    ids = make_bar(bench, drive).ids | drive.ids | wheel | drive.host_ids
+    return BusPort(bus, ids, log, drive.host_ids if bench.bus.echoes else ())
 
 
 @contextmanager

@@ -30,6 +30,10 @@ class BenchScene:
         spec.visual.global_.offwidth, spec.visual.global_.offheight = 3840, 2160
         self.model: mujoco.MjModel = spec.compile()
         self.data = mujoco.MjData(self.model)
+        self._screen = self.model.texture("screen").id
+        rows, columns = road_ahead().shape[:2]
+        self.screen_size = columns, rows
+        """Width and height in pixels of the picture on the screen before the rider."""
         self._steer = int(self.model.joint("steer").qposadr[0])
         self.show(Pose(0, 0, 0, 0, 0, 0, 0, 0))
 
@@ -37,6 +41,12 @@ class BenchScene:
         self.data.qpos[self._steer] = pose.steer
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
+
+    def put_on_the_screen(self, picture: NDArray[np.uint8]) -> int:
+        """A picture of that size; gives the texture, which a renderer must be given anew."""
+        begin = int(self.model.tex_adr[self._screen])
+        self.model.tex_data[begin : begin + picture.size] = picture.ravel()
+        return self._screen
 
     def camera(self, view: str) -> str:
         if view not in self.views:

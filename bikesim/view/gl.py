@@ -30,7 +30,7 @@ class Backend:
     @property
     def software(self) -> bool:
         """Whether the processor draws."""
-        return bool(_SOFTWARE.search(self.renderer))
+        return is_software(self.renderer)
 
     @property
     def told(self) -> str:
@@ -41,6 +41,11 @@ class Backend:
     def environment(self, threads: int) -> dict[str, str]:
         """For a process that draws with it, in software with so many threads."""
         return _environment(self.name) | {"LP_NUM_THREADS": str(threads)}
+
+
+def is_software(renderer: str) -> bool:
+    """Whether an OpenGL that calls itself so draws with the processor."""
+    return bool(_SOFTWARE.search(renderer))
 
 
 def find_backend() -> Backend:

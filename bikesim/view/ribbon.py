@@ -54,8 +54,8 @@ class Ribbon:
             for k, count in enumerate(_POOLS)
         ]
 
-    def place(self, data: mujoco.MjData, x: float, y: float) -> None:
-        """Lays the pieces about a bicycle at x, y (y to the left) [m]."""
+    def place(self, data: mujoco.MjData, x: float, y: float, reach: float = math.inf) -> None:
+        """Lays the pieces about a bicycle at x, y (y to the left), up to `reach` away [m]."""
         here = np.array([x, y])
         blocks = self._distance(2, here)
         far = np.flatnonzero((blocks > _MIDDLE) & (blocks < _FAR))
@@ -63,11 +63,14 @@ class Ribbon:
         apart = self._distance(1, here, within)
         fine = _children(within[apart <= _FINE])
         for k, chosen in enumerate((fine, within[apart > _FINE], far)):
-            self._lay(data, k, chosen, here)
+            self._lay(data, k, self._reached(k, chosen, here, reach), here)
 
     def _distance(self, level: int, here: Array, chosen: NDArray | slice = slice(None)) -> Array:
         offset = self._levels[level].middles[chosen] - here
         return np.hypot(offset[:, 0], offset[:, 1])
+
+    def _reached(self, level: int, chosen: NDArray, here: Array, reach: float) -> NDArray:
+        return chosen if reach > _FAR else chosen[self._distance(level, here, chosen) < reach]
 
     def _lay(self, data: mujoco.MjData, level: int, chosen: NDArray, here: Array) -> None:
         pool, pieces = self._pools[level], self._levels[level]

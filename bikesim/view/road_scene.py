@@ -1,6 +1,9 @@
 """The rider's display: a bicycle with its rider on a country road."""
 
+import math
+
 import mujoco
+import numpy as np
 from numpy.typing import NDArray
 
 from bikesim.errors import unknown
@@ -14,6 +17,7 @@ from bikesim.view.ribbon import Ribbon
 from bikesim.view.world import World, world_spec
 
 _OWN_BODY = 3  # the group of mjcf/world.xml that the rider's own eyes do not see
+_STRAIGHT = np.array([[-1e3, 0.0], [3e4, 0.0]])  # m, where only some of it is drawn
 _SHADE, _HIDDEN = (0.03, 0.04, 0.05, 0.075), (0, 0, 0, 0)
 
 
@@ -22,7 +26,18 @@ class RoadScene:
 
     views = ("first", "second")
 
-    def __init__(self, bicycle: Bicycle, *, path: NDArray | None, roll_cue: bool) -> None:
+    def __init__(
+        self,
+        bicycle: Bicycle,
+        *,
+        path: NDArray | None,
+        roll_cue: bool,
+        preview: float | None = None,
+    ) -> None:
+        """`preview` [s]: of riding, so far ahead the path is drawn; None: all of it."""
+        if path is None and preview is not None:
+            path = _STRAIGHT
+        self._preview = preview
         spec = world_spec()
         self._cyclist = Cyclist(spec, wheel_geometry(bicycle))
         self._world = World(spec, None if path is None else path * [1, -1])
@@ -47,7 +62,8 @@ class RoadScene:
         for part in (self._world, self._crops):
             part.place(self.model, self.data, pose.x, -pose.y, pose.heading)
         if self._ribbon:
-            self._ribbon.place(self.data, pose.x, -pose.y)
+            ahead = math.inf if self._preview is None else self._preview * pose.speed
+            self._ribbon.place(self.data, pose.x, -pose.y, ahead)
         self._cyclist.show(self.model, self.data, pose.heading, roll, pose.steer, pose.distance)
         mujoco.mj_camlight(self.model, self.data)
 

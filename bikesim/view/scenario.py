@@ -8,14 +8,11 @@ from numpy.typing import NDArray
 
 from bikesim.errors import InputError
 from bikesim.path.building import make_path
-from bikesim.path.path import path_points
+from bikesim.path.in_sight import points_in_sight
 from bikesim.path.settings import PathSettings
 
 if TYPE_CHECKING:
     from bikesim.record.reader import Run
-
-_IN_SIGHT = 400.0  # m of the path before its begin and beyond its end, or the bicycle's
-_APART = 0.5  # m
 
 
 class Shown:
@@ -49,10 +46,7 @@ class Shown:
             path = make_path(PathSettings(**self._table("path")))
         except InputError as error:
             raise InputError(f"{self._run.path}: its scenario: {error}") from None
-        if path.straight:
-            return None
-        end = path.length if path.closed else max(path.length, distance) + _IN_SIGHT
-        return path_points(path, -_IN_SIGHT, end, _APART)
+        return points_in_sight(path, distance)
 
     def _table(self, name: str) -> dict[str, Any]:
         table = self._tables.get(name)

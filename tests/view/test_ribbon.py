@@ -11,14 +11,14 @@ from bikesim.view.ribbon import HALF_WIDTH, Ribbon
 from bikesim.view.world import world_spec
 
 
-def laid(path: np.ndarray, x: float, y: float) -> np.ndarray:
+def laid(path: np.ndarray, x: float, y: float, reach: float = math.inf) -> np.ndarray:
     """Middles of the pieces that lie on the ground, in the record's axes [m]."""
     spec = world_spec()
     ribbon = Ribbon(spec, path)
     model = spec.compile()
     data = mujoco.MjData(model)
     ribbon.bind(model)
-    ribbon.place(data, x, -y)
+    ribbon.place(data, x, -y, reach)
     pieces = [k for k in range(model.nbody) if model.body(k).name.startswith("ribbon")]
     places = data.mocap_pos[model.body_mocapid[pieces]]
     return (places[places[:, 2] > -1] + [x, -y, 0])[:, :2] * [1, -1]
@@ -54,6 +54,15 @@ def test_far_along_a_long_path_only_what_is_near_is_laid():
     assert len(places) < 200
     assert np.ptp(places[:, 0]) < 700
     assert np.allclose(places[:, 1], 2.0)
+
+
+@pytest.mark.parametrize("reach", [6.0, 60.0, 200.0])
+def test_of_a_preview_nothing_farther_is_laid(reach: float):
+    path = np.array([[-500.0, 0.0], [1000.0, 0.0]])
+    near = laid(path, 10.0, 0.0, reach)[:, 0] - 10
+    whole = laid(path, 10.0, 0.0)[:, 0] - 10
+    assert sorted(near) == sorted(whole[np.abs(whole) < reach])
+    assert near.max() > reach - 17  # the longest piece
 
 
 def test_beside_the_path_it_is_whole():

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from bikesim.cli.bench.calibrate import Calibrate
 from bikesim.cli.bench.check import Check
+from bikesim.cli.bench.display import Display
 from bikesim.cli.bench.emulate import Emulate
 from bikesim.cli.bench.identify import Identify
 from bikesim.cli.bench.margins import Margins
@@ -23,13 +24,14 @@ COMMANDS = {
     "identify": Identify,
     "margins": Margins,
     "run": Run,
+    "display": Display,
     "emulate": Emulate,
 }
 
 
 @dataclass(frozen=True)
 class Bench:
-    """A real bench on a CAN bus: check, calibrate, identify, margins, run, emulate."""
+    """A real bench on a CAN bus: check, calibrate, identify, margins, run, display, emulate."""
 
 
 def parse_bench(arguments: list[str]):

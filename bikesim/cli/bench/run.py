@@ -1,6 +1,7 @@
 """bikesim bench run"""
 
 import sys
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -57,10 +58,13 @@ class Run:
     """Given twice: ride at a speed at which the loop has no margin."""
     report: Flag = False
     """Lateness and compute time of the ticks at the end: percentiles, a histogram, a figure."""
+    display: Flag = False
+    """Show the rider the road, in a window of a process of its own (bikesim bench display)."""
     json: Flag = False
     """Print the summary as JSON."""
 
     def __call__(self) -> int:
+        from bikesim.bench.display_process import DisplayProcess
         from bikesim.bench.profile import load_bench
         from bikesim.bench.ride import Order, run_bench
         from bikesim.bench.scenario import bench_scenario
@@ -83,7 +87,8 @@ class Run:
             frames,
         )
         say = _to_stderr if self.json else _told
-        run_bench(order, output, force=self.force, say=say)
+        display = DisplayProcess(self.bench, say) if self.display else nullcontext()
+        run_bench(order, output, force=self.force, say=say, display=display)
         return self._end(open_run(output), picture)
 
     def _as_virtual(self) -> VirtualRun:
