@@ -18,6 +18,15 @@ def unknown(kind: str, name: str, known: Iterable[str]) -> InputError:
     hint = (
         f"did you mean {' or '.join(by_lower[text] for text in near)}?"
         if near
-        else f"known: {', '.join(by_lower.values())}"
+        else f"known: {_listed(list(by_lower.values()))}"
     )
     return InputError(f"unknown {kind} {name!r}; {hint}")
+
+
+def _listed(names: list[str]) -> str:
+    """All names, or of a great many the first ones: a line is to be read."""
+    more = len(names) - _MOST_LISTED
+    return ", ".join([*names[:_MOST_LISTED], f"and {more} more"] if more > 1 else names)
+
+
+_MOST_LISTED = 60

@@ -65,8 +65,8 @@ class Experiment:
         if self.file is None:
             return self._list()
         self._check()
-        study = self._study(self.file)
         folder = self.output or Path("runs") / Path(self.file).stem
+        study = self._study(self.file, folder)
         if self.dry_run:
             return self._tell_plan(study)
         return self._conduct(study, folder)
@@ -91,9 +91,10 @@ class Experiment:
             print(f"{name.ljust(width)}  {title}")
         return 0
 
-    def _study(self, file: str) -> "Study":
+    def _study(self, file: str, folder: Path) -> "Study":
         from bikesim.experiment.study.check import check_conditions
         from bikesim.experiment.study.estimate import seconds_for_many, told
+        from bikesim.experiment.study.folder import is_done
         from bikesim.experiment.study.plan import TooManyError, make_study
         from bikesim.experiment.study.reading import read_experiment
         from bikesim.textfile import located
@@ -106,7 +107,9 @@ class Experiment:
                 size = self._size(experiment)
                 seconds = seconds_for_many(error.scenario, error.runs, size, self._n)
                 raise InputError(f"{error}; they would take {told(seconds)}") from None
-            check_conditions(study)
+            # To report what is done takes no rider.
+            if self.dry_run or self.force or not is_done(folder, study):
+                check_conditions(study)
             return study
 
     def _size(self, experiment: Any) -> int:
@@ -152,7 +155,12 @@ class Experiment:
         return self._status(folder, conducted)
 
     def _ride(self, study: "Study", folder: "ResultsFolder") -> "Conducted":
-        from bikesim.experiment.study.conduct import Conducted, ride_batches, ride_kept
+        from bikesim.experiment.study.conduct import (
+            Conducted,
+            ride_batches,
+            ride_kept,
+            try_riders,
+        )
         from bikesim.experiment.study.crew import LocalCrew
         from bikesim.experiment.watch import Watch
 
@@ -160,6 +168,9 @@ class Experiment:
             conducted = Conducted(True, ())
             if len(folder.done) < study.runs:
                 with self._crew() as crew:
+                    tried = try_riders(study, crew, watch)
+                    if not tried.whole:
+                        return tried
                     batches = self._batches(study, folder.done, crew.workers)
                     self._announce(study, folder, batches, crew.workers)
                     conducted = ride_batches(study, batches, folder, crew, watch)

@@ -88,12 +88,19 @@ def results_told(results: "Results", folder: Path, report: Path | None) -> str:
         *([results.study.experiment.title] if results.study.experiment.title else []),
         *table_lines(header, rows[:_MOST_ROWS]),
         *_more(len(rows)),
-        "medians of the runs that came to their end; falls with Wilson's interval",
+        _which_medians([m.name for m in metrics]),
         *_faults(results.table),
         f"results {folder / 'results.parquet'}, .csv",
         *([] if report is None else [f"report  {report}"]),
     ]
     return "\n".join(lines)
+
+
+def _which_medians(names: list[str]) -> str:
+    from bikesim.experiment.metric_table import FALL_TIME
+
+    falls = "; that of the fall time by Kaplan-Meier, of all" if FALL_TIME in names else ""
+    return f"medians of the runs that came to their end{falls}; falls with Wilson's interval"
 
 
 def results_json(results: "Results", folder: Path, report: Path | None) -> dict[str, Any]:
@@ -112,12 +119,15 @@ def results_json(results: "Results", folder: Path, report: Path | None) -> dict[
 def _rows(results: "Results") -> list[dict[str, Any]]:
     import numpy as np
 
-    from bikesim.experiment.metric_table import OF_ALL_RUNS, WHOLE
+    from bikesim.experiment.metric_table import FALL_TIME, OF_ALL_RUNS, WHOLE
     from bikesim.report.experiment.rates import wilson
+    from bikesim.report.experiment.survival import kaplan_meier
 
     names = [metric.name for metric in _primary(results)]
     numbers = results.table["condition_number"].to_numpy()  # they rise from row to row
-    columns = {name: results.table[name].to_numpy(np.float64) for name in ["fell", *names]}
+    columns = {
+        name: results.table[name].to_numpy(np.float64) for name in ["fell", "duration", *names]
+    }
     for name in names:
         if name not in OF_ALL_RUNS:
             columns[name] = np.where(results.table["ending"] == WHOLE, columns[name], np.nan)
@@ -126,6 +136,10 @@ def _rows(results: "Results") -> list[dict[str, Any]]:
         first, last = np.searchsorted(numbers, [condition.number, condition.number + 1])
         if first == last:
             continue
+        medians = {name: _median(columns[name][first:last]) for name in names}
+        if FALL_TIME in medians:
+            rides = columns["duration"][first:last], columns["fell"][first:last] > 0
+            medians[FALL_TIME] = kaplan_meier(*rides).median
         rate = wilson(int(columns["fell"][first:last].sum()), int(last - first))
         rows.append(
             {
@@ -135,7 +149,7 @@ def _rows(results: "Results") -> list[dict[str, Any]]:
                 "falls": rate.events,
                 "fall_rate_low": rate.low,
                 "fall_rate_high": rate.high,
-                "medians": {name: _median(columns[name][first:last]) for name in names},
+                "medians": medians,
             }
         )
     return rows

@@ -14,7 +14,7 @@ from bikesim.experiment.course import BatchCourse
 from bikesim.experiment.history import History
 from bikesim.experiment.run import make_setting, rig_inertia, scenario_bicycle, sources
 from bikesim.experiment.scenario import Scenario
-from bikesim.experiment.torque_record import with_recorded_torque
+from bikesim.experiment.torque_record import with_file_digest, with_recorded_torque
 from bikesim.haptics import make_haptics
 from bikesim.loop import Start, ride
 from bikesim.model.bicycle import Bicycle
@@ -54,6 +54,7 @@ def ride_batch(
     Asked at every tick, `interrupted` ends them all. Raises InputError.
     """
     first, rigs = scenarios[0], len(scenarios)
+    with_file_digest(first.rider)  # one torque for all: it is that of the settings
     bicycle, law = scenario_bicycle(first), Law(first.law)
     course = BatchCourse(scenarios, bicycle)
     riding = Riding(rigs)

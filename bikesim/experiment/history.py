@@ -17,8 +17,9 @@ HIGHEST_RATE = 100.0
 
 # The channels of a record that a history has; those of the virtual rig are NaN where there is none.
 SIGNALS = (
-    "time", "steer", "steer_rate", "true_steer_rate", "speed", "roll", "roll_rate", "heading",
-    "x", "y", "feedback_torque", "sent_torque", "rider_torque", "roll_moment", "steer_moment",
+    "time", "steer", "steer_rate", "true_steer", "true_steer_rate", "speed", "roll", "roll_rate",
+    "heading", "x", "y", "feedback_torque", "sent_torque", "rider_torque", "roll_moment",
+    "steer_moment",
 )  # fmt: skip
 
 
@@ -28,8 +29,9 @@ class History:
 
     Every `every`-th tick, the first included, unfiltered; `period` [s] lies between two samples.
     `ticks` were ridden in all, the last of them after the last sample or at it.
-    `planned_duration` [s] is what the scenario asked for. A bench knows no steer rate but the
-    measured one, which then stands for `true_steer_rate` too.
+    `planned_duration` [s] is what the scenario asked for. `steer` and `steer_rate` are what the
+    sensors said, after noise, delay and filter; `true_steer` and `true_steer_rate` are of the bar
+    itself. A bench and a replay know the sensed ones alone, which then stand for both.
     """
 
     period: float
@@ -40,6 +42,7 @@ class History:
     time: NDArray[np.float64]
     steer: NDArray[np.float64]
     steer_rate: NDArray[np.float64]
+    true_steer: NDArray[np.float64]
     true_steer_rate: NDArray[np.float64]
     speed: NDArray[np.float64]
     roll: NDArray[np.float64]
@@ -67,8 +70,9 @@ class History:
         missing = np.full(run.ticks, np.nan)
         known = set(run.names)
         values = {n: (run.channel(n) if n in known else missing)[::every] for n in SIGNALS}
-        if "true_steer_rate" not in known:
-            values["true_steer_rate"] = values["steer_rate"]
+        for name in ("steer", "steer_rate"):
+            if f"true_{name}" not in known:
+                values[f"true_{name}"] = values[name]
         return cls(
             period=every * run.period,
             every=every,

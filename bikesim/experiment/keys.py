@@ -1,7 +1,7 @@
 """Every key of a scenario, for help and documentation."""
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -29,11 +29,17 @@ def scenario_keys() -> list[Key]:
 
 def _keys(model: type[BaseModel], prefix: str) -> Iterator[Key]:
     for name, field in model.model_fields.items():
-        kind: Any = field.annotation
-        if isinstance(kind, type) and issubclass(kind, BaseModel):
-            yield from _keys(kind, f"{prefix}{name}.")
+        if (table := _table(field.annotation)) is not None:
+            yield from _keys(table, f"{prefix}{name}.")
             continue
         yield Key(f"{prefix}{name}", _told(field, prefix), field.description or "")
+
+
+def _table(kind: Any) -> type[BaseModel] | None:
+    """The model of a key that is a table, also of one that may be absent."""
+    kinds = [one for one in (get_args(kind) or (kind,)) if one is not type(None)]
+    only = kinds[0] if len(kinds) == 1 else None
+    return only if isinstance(only, type) and issubclass(only, BaseModel) else None
 
 
 def _told(field: FieldInfo, prefix: str) -> str:

@@ -46,8 +46,8 @@ METRICS = (
     Metric("duration", "s", "Time ridden: until the end, the fall or a fault.", "loop", "more"),
     _angle("roll", "the roll angle φ"),
     _rate("roll_rate", "the roll rate φ̇"),
-    _angle("steer", "the steer angle δ as measured"),
-    _rate("steer_rate", "the steer rate δ̇ as measured"),
+    _angle("steer", "the steer angle δ of the bar itself, not as sensed"),
+    _rate("steer_rate", "the steer rate δ̇ of the bar itself, not as sensed"),
     Metric("feedback_torque_rms", "N m", "RMS of the feedback torque as sent.", _LIST),
     Metric("rider_torque_rms", "N m", "RMS of T_δ, arms not counted.", _LIST, "less"),
     Metric(
@@ -108,7 +108,9 @@ METRICS = (
 
 # What a fall is about. Any other metric of a run that fell is mostly that of its fall, so of a
 # condition it is told of the runs that came to their end.
-OF_ALL_RUNS = ("fell", "fall_time", "duration")
+FALL_TIME = "fall_time"
+"""Its median is that of all runs by Kaplan-Meier: of the fallen alone it would be too early."""
+OF_ALL_RUNS = ("fell", FALL_TIME, "duration")
 WHOLE = "end of run"
 """How a run ends that nothing ended before its time."""
 

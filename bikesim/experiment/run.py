@@ -11,7 +11,7 @@ import numpy as np
 from bikesim import bicycles
 from bikesim.experiment.course import ScenarioCourse
 from bikesim.experiment.scenario import Scenario, to_toml
-from bikesim.experiment.torque_record import with_recorded_torque
+from bikesim.experiment.torque_record import with_file_digest, with_recorded_torque
 from bikesim.guard import Guard
 from bikesim.haptics import make_haptics
 from bikesim.loop import Haptics, Start, ride
@@ -78,6 +78,7 @@ def sources(scenario: Scenario) -> tuple[np.random.Generator, np.random.Generato
 
 def build(scenario: Scenario) -> Parts:
     """Everything of a run but its record. Raises InputError."""
+    scenario = scenario.model_copy(update={"rider": with_file_digest(scenario.rider)})
     bicycle = scenario_bicycle(scenario)
     course = ScenarioCourse(scenario, bicycle)
     for_rider, for_sensors = sources(scenario)

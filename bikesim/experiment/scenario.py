@@ -10,10 +10,10 @@ from pydantic import Field, Strict, model_validator
 
 from bikesim import textfile
 from bikesim.experiment.disturbances import Disturbance
+from bikesim.experiment.files import beside
 from bikesim.guard import GuardSettings
 from bikesim.haptics import HapticsSettings, make_haptics
 from bikesim.path.settings import PathSettings
-from bikesim.rider.kinds import beside
 from bikesim.rider.settings import RiderSettings
 from bikesim.rider.vision import VisionSettings
 from bikesim.rig.settings import RigSettings
@@ -152,29 +152,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
     Raises InputError.
     """
-    return found_beside(textfile.read_toml(path, "scenario"), path.parent)
-
-
-def found_beside(keys: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """The keys with the path's file, and that of a rider of one's own, in this folder if it is
-    there; else as it is named.
-    """
-    keys = _with_rider_beside(keys, folder)
-    path = keys.get("path")
-    file = path.get("file") if isinstance(path, dict) else path
-    if not isinstance(file, str) or "." not in file or not textfile.is_there(folder / file):
-        return keys
-    found = str(folder / file)
-    return {**keys, "path": {**path, "file": found} if isinstance(path, dict) else found}
-
-
-def _with_rider_beside(keys: dict[str, Any], folder: Path) -> dict[str, Any]:
-    rider = keys.get("rider")
-    name = rider.get("name") if isinstance(rider, dict) else rider
-    if not isinstance(name, str):
-        return keys
-    found = beside(name, folder)
-    return {**keys, "rider": {**rider, "name": found} if isinstance(rider, dict) else found}
+    return beside(textfile.read_toml(path, "scenario"), path.parent)
 
 
 def to_toml(scenario: Scenario) -> str:

@@ -13,6 +13,7 @@ from bikesim.record.reader import Run
 class Summary(NamedTuple):
     """A run in a few figures; root mean squares over all its ticks, SI.
 
+    `rms_steer` is of the bar itself; where the record has the sensors' word alone, of that.
     `fall_time` [s] is None if the bicycle did not fall; `sim_over_wall` is simulated time over
     the wall time of the loop.
     """
@@ -39,7 +40,7 @@ def summarise(run: Run) -> Summary:
         fall_time=ending.fall_time,
         ticks=run.ticks,
         rms_roll=_rms(run.channel("roll")),
-        rms_steer=_rms(run.channel("steer")),
+        rms_steer=_rms(run.channel("true_steer" if "true_steer" in run.names else "steer")),
         rms_feedback_torque=_rms(run.channel("sent_torque")),
         sim_over_wall=run.ticks * run.period / float(wall[-1]) if wall[-1] > 0 else math.nan,
     )

@@ -1,5 +1,6 @@
-"""The torque of a recorded run, for a rider who gives it again."""
+"""The torque of a recorded run, for a rider who gives it again; and which file a torque is from."""
 
+import hashlib
 from functools import lru_cache
 from pathlib import Path
 
@@ -30,6 +31,31 @@ def with_recorded_torque(settings: RiderSettings) -> RiderSettings:
         samples = _samples(file, status.st_mtime_ns, status.st_size)
     played = script.model_copy(update={"samples": samples})
     return settings.model_copy(update={"script": played})
+
+
+def with_file_digest(settings: RiderSettings) -> RiderSettings:
+    """The same rider, with a digest of the file that his torque is from; others as they are.
+
+    So a record says which torque it was, and riding it again notices where the file has changed.
+    Raises InputError for a file that is not the one that the settings tell of.
+    """
+    script = settings.script
+    if script is None or script.samples or not script.file:
+        return settings
+    file = Path(script.file)
+    with located(f"rider.script.file {file}"):
+        try:
+            with file.open("rb") as content:
+                found = hashlib.file_digest(content, "sha256").hexdigest()
+        except OSError as error:
+            raise InputError((error.strerror or str(error)).lower()) from None
+        if script.digest not in (None, found):
+            raise InputError(
+                f"is another file than it was: its SHA-256 is {found[:12]}..., "
+                f"rider.script.digest is {script.digest[:12]}...; without digest any file will do"
+            )
+    told = script.model_copy(update={"digest": found})
+    return settings.model_copy(update={"script": told})
 
 
 # A file's time and size are asked for so that one that has changed is read again.

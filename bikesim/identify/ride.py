@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +112,7 @@ def read_ride(
 
 
 def check_together(rides: Sequence[Ride]) -> None:
-    """Refuse rides that no one set of gains can be asked of. Raises InputError."""
+    """Refuse rides that no one set of gains can be asked of, or one twice. Raises InputError."""
     first = rides[0]
     for ride in rides[1:]:
         for what, one, other in _compared(first, ride):
@@ -124,6 +125,23 @@ def check_together(rides: Sequence[Ride]) -> None:
                 f"{ride.name}: ridden at {ride.speed:.4g} m/s, but {first.name} at "
                 f"{first.speed:.4g} m/s: identify them apart"
             )
+    for one, other in combinations(rides, 2):
+        if _same(one, other):
+            raise InputError(
+                f"{other.name}: the same ride as {one.name}, by its signals; it counts once"
+            )
+
+
+def _same(one: Ride, other: Ride) -> bool:
+    """Whether one has the other's signals, or the shorter those at the longer's beginning.
+
+    Counted as two they would make intervals too narrow, under whatever names and in whatever files.
+    """
+    n = min(len(one.roll), len(other.roll))
+    return all(
+        np.array_equal(mine[:n], yours[:n])
+        for mine, yours in ((one.roll, other.roll), (one.steer, other.steer))
+    )
 
 
 def _compared(one: Ride, other: Ride) -> list[tuple[str, Any, Any]]:

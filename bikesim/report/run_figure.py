@@ -14,6 +14,7 @@ from bikesim.report.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, f
 
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, GREY)
 _FEEDBACK, _RIDER = "feedback torque $T_f$", "rider torque $T_δ$"
+_MEASURED = "as the drive measures it"
 # Above the axes, where no line runs.
 _ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1, 0.98), "ncols": 4, "borderaxespad": 0}
 
@@ -66,6 +67,9 @@ def _draw(run: Run, colour: str, several: bool, roll: Axes, steer: Axes, torque:
         torque.plot(
             time, run.channel("rider_torque")[thin], style, color=shade, lw=0.9, label=_RIDER
         )
+    elif "motor_torque" in run.names and not several:  # a bench, which does not know the rider's
+        measured = run.channel("motor_torque")[thin]
+        torque.plot(time, measured, color=GREY, lw=0.7, zorder=1, label=_MEASURED)
     if run.ending is not None and run.ending.fell:
         roll.plot(time[-1:], np.degrees(run.channel("roll")[-1:]), "x", color=colour, ms=8, mew=2)
 

@@ -1,7 +1,6 @@
 """Which riders there are: each a name, the class of its brain, and the figures it has."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from bikesim.errors import InputError, unknown
@@ -128,13 +127,6 @@ def script_kind(name: str) -> str | None:
 def is_custom(name: str) -> bool:
     """Whether it is a rider of the user's own: FILE.py:CLASS or package.module:CLASS."""
     return ":" in name
-
-
-def beside(name: str, folder: Path) -> str:
-    """The name of a rider as a file in `folder` says it: a FILE.py there goes before others."""
-    place, colon, class_name = name.rpartition(":")
-    file = folder / place
-    return f"{file}{colon}{class_name}" if place.endswith(".py") and file.is_file() else name
 
 
 def kind_of(name: str) -> Kind:

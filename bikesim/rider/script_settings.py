@@ -23,8 +23,8 @@ _KINDS: dict[str, dict[str, Any]] = {
         "start": 0.0, "stop": None,
     },
     "chirp": {"torque": 1.0, **_BAND, "sweep": "logarithmic", "start": 0.0, "duration": 20.0},
-    "file": {"file": None, "samples": (), "start": 0.0},
-    "record": {"file": None, "samples": (), "start": 0.0},
+    "file": {"file": None, "digest": None, "samples": (), "start": 0.0},
+    "record": {"file": None, "digest": None, "samples": (), "start": 0.0},
 }  # fmt: skip
 SCRIPT_KINDS = tuple(_KINDS)
 
@@ -87,6 +87,11 @@ class ScriptSettings(Settings):
     file: str | None = Field(
         default=None,
         description="Text file of columns time [s] and torque [N m]; of kind record a run file.",
+    )
+    digest: str | None = Field(
+        default=None,
+        description="SHA-256 of the file, as a record has it: a file with another is refused; "
+        "default: any file will do.",
     )
     samples: Annotated[tuple[_Sample, ...], _List] = Field(
         default=(), description="In place of a file: pairs of time [s] and torque [N m]."

@@ -37,12 +37,12 @@ def bench(tmp_path: Path):
 def test_help_names_the_commands(cli):
     said = cli("bench", "--help")
     assert (said.status, said.err) == (0, "")
-    for name in ("check", "run", "emulate"):
+    for name in ("check", "run", "display", "emulate"):
         assert f"• {name} " in said.out
     assert "bench" in cli("--help").out
 
 
-@pytest.mark.parametrize("name", ["check", "run", "emulate"])
+@pytest.mark.parametrize("name", ["check", "run", "display", "emulate"])
 def test_help_of_a_command(cli, name: str):
     said = cli("bench", name, "--help")
     assert (said.status, said.err) == (0, "")
@@ -54,6 +54,18 @@ def test_help_of_a_command(cli, name: str):
     [
         (["chek", "x"], "unknown bench command 'chek'; did you mean check?"),
         (["check"], "BENCH is missing"),
+        (["display", "cia402-emulated", "--view", "firts"], "unknown --view 'firts'; did you mean"),
+        (
+            ["display", "cia402-emulated", "--quality", "high"],
+            "unknown --quality 'high'; known: d",
+        ),
+        (["display", "cia402-emulated", "--size", "big"], "--size big: must be WIDTHxHEIGHT"),
+        (
+            ["display", "cia402-emulated", "--size", "9x9"],
+            "--size 9x9: from 320x180 to 16384x1638",
+        ),
+        (["display", "cia402-emulated", "--monitor", "x"], "--monitor x: must be a whole number"),
+        (["display", "cia402-emulatd"], "unknown bench 'cia402-emulatd'; did you mean cia402-emul"),
         (["check", "cia402-emulatd"], "unknown bench 'cia402-emulatd'; did you mean cia402-emul"),
         (["check", "none.toml"], "bench profile none.toml: no such file"),
         (["run", "cia402-emulated", "--speed", "11"], "must be at most limits.speed = 10 m/s"),

@@ -34,6 +34,7 @@ KILLER = """
 import os
 import signal
 from pathlib import Path
+import numpy as np
 
 class Killer:
     def __init__(self, setting, *, often=1.0):
@@ -42,7 +43,8 @@ class Killer:
     def intend(self, steer, steer_rate, seen):
         marks = Path(__file__).with_name("marks")
         marks.mkdir(exist_ok=True)
-        if len(list(marks.iterdir())) < self.often:
+        # Not where he is tried, three at once and one by one.
+        if np.size(steer) == 2 and len(list(marks.iterdir())) < self.often:
             (marks / str(os.getpid())).touch()
             os.kill(os.getpid(), signal.SIGKILL)
         return 0 * steer
@@ -181,6 +183,37 @@ class TestProcess:
         )
         assert "law=paper" in out
 
+    @pytest.mark.slow
+    @pytest.mark.parametrize("crew", ["--jobs", "--workers"])
+    def test_a_ctrl_c_is_for_all_of_its_processes_and_one_line(
+        self, process, file, tmp_path: Path, crew
+    ):
+        """A terminal signals all that are in its foreground."""
+        file(MANY)
+        command = ("experiment", "e.toml", "--no-report", crew, 2)
+        begun = process(*command, start_new_session=True)
+        try:
+            deadline = time.monotonic() + 60
+            while not list(tmp_path.glob("runs/e/parts/*.parquet")):
+                assert begun.poll() is None, begun.communicate()
+                assert time.monotonic() < deadline
+                time.sleep(0.01)
+            os.killpg(begun.pid, signal.SIGINT)
+            _, err = begun.communicate(timeout=60)
+        finally:
+            if begun.poll() is None:
+                begun.kill()
+                begun.communicate()
+        assert begun.returncode == 130
+        done = rows(tmp_path / "runs/e")
+        assert 0 < len(done) < 40
+        announced, ended = err.splitlines()
+        assert announced.startswith("2 conditions x 20 seeds: 40 runs in 20 batches on 2 workers")
+        assert ended == (
+            f"bikesim: interrupted; {len(done)} of 40 runs are kept in runs/e, "
+            "the same command goes on"
+        )
+
     def test_killed_its_workers_end_and_it_goes_on(self, riding, process, cli, tmp_path: Path):
         workers = children(riding.pid)
         assert len(workers) == 2
@@ -231,6 +264,57 @@ class TestProcess:
         assert err.startswith("bikesim: batch 1 (2 runs, the first 1-1): its worker ended twice")
         assert err.count("\n") == 1
         assert len(list((tmp_path / "marks").iterdir())) == 2
+
+
+RIDERS = """
+import numpy as np
+
+class Honest:
+    def __init__(self, setting): ...
+    def intend(self, steer, steer_rate, seen):
+        return 3.0 * seen.roll + 5.0 * seen.roll_rate
+
+class Average(Honest):
+    def intend(self, steer, steer_rate, seen):
+        return 0.0 * steer + np.mean(super().intend(steer, steer_rate, seen))
+"""
+WITH_RIDER = """
+seeds = 2
+keep = "first"
+[scenario]
+duration = 0.2
+rider = "riders.py:{}"
+"""
+
+
+def test_a_rider_who_rides_otherwise_in_a_batch_is_one_line(refusal, file, tmp_path: Path):
+    file(RIDERS, "riders.py")
+    told = refusal("experiment", file(WITH_RIDER.format("Average")), "--jobs", 1, "--json")
+    assert "riders.py:Average does not ride in a batch as he does alone: after 0.0" in told
+    assert not (tmp_path / "runs/e/results.csv").exists()
+
+
+def test_what_is_done_is_reported_without_the_riders_file(cli, file, tmp_path: Path):
+    riders = tmp_path / file(RIDERS, "riders.py")
+    file(WITH_RIDER.format("Honest"))
+    first = cli("experiment", "e.toml", "--jobs", 1)
+    assert first.status == 0
+    riders.unlink()
+    report = tmp_path / "runs/e/report.html"
+    report.unlink()
+    again = cli("experiment", "e.toml", "--jobs", 1)
+    assert (again.status, again.err, again.out) == (0, "", first.out)
+    assert report.exists()
+    assert cli("experiment", "e.toml", "--json", "--no-report").json["runs"] == 2
+
+
+def test_while_runs_are_missing_the_riders_file_is_too(cli, refusal, file, tmp_path: Path):
+    riders = tmp_path / file(RIDERS, "riders.py")
+    file(WITH_RIDER.format("Honest"))
+    assert cli("experiment", "e.toml", "--jobs", 1, "--no-report").status == 0
+    riders.unlink()
+    (tmp_path / "runs/e/results.parquet").unlink()
+    assert f"there is no file {riders}" in refusal("experiment", "e.toml", "--json")
 
 
 def children(pid: int) -> list[int]:

@@ -85,12 +85,23 @@ def test_a_table_and_a_figure(cli, run: Path):
 
 
 def test_several_records_and_a_named_figure(cli, run: Path):
-    other = run.with_name("other.h5")
-    other.write_bytes(run.read_bytes())
+    other, scenario = run.with_name("other.h5"), run.with_name("scenario.toml")
+    scenario.write_text(SCENARIO)
+    assert main(["run", str(scenario), "--seed", "2", "--output", str(other)]) == 0
     said = cli("identify", "rider", run, other, "--figure", "both.svg", "--confidence", 0.9)
     assert "and 1 more" in said.out
     assert "90 % interval" in said.out
     assert (run.parent / "both.svg").exists()
+
+
+def test_a_record_under_two_names_is_not_two(cli, run: Path):
+    other = run.with_name("other.h5")
+    other.write_bytes(run.read_bytes())
+    refused = cli("identify", "rider", run, other)
+    assert refused.status == 2
+    assert (
+        refused.err == f"bikesim: {other}: the same ride as {run}, by its signals; it counts once\n"
+    )
 
 
 def test_a_lag_that_is_free(cli, run: Path):

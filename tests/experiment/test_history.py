@@ -37,12 +37,13 @@ def test_a_fall_ends_it_before_its_time(ridden):
 
 
 def test_a_rig_without_a_rider_model_has_no_rider_torque(ridden):
-    record = ridden()
+    record = ridden(rig={"angle_noise": 0.01})
+    absent = ("rider_torque", "true_steer", "true_steer_rate")
 
     class Bench:
         """The record of a rig that has only the loop's own channels."""
 
-        names = tuple(name for name in record.names if name != "rider_torque")
+        names = tuple(name for name in record.names if name not in absent)
         period, ticks, ending, scenario = (
             record.period, record.ticks, record.ending, record.scenario,
         )  # fmt: skip
@@ -51,4 +52,7 @@ def test_a_rig_without_a_rider_model_has_no_rider_torque(ridden):
     bench: Run = Bench()  # type: ignore[assignment]
     history = History.of_run(bench)
     assert np.isnan(history.rider_torque).all()
-    assert np.array_equal(history.steer, record.channel("steer")[::10])
+    for name in ("steer", "steer_rate"):
+        sensed = record.channel(name)[::10]
+        assert np.array_equal(getattr(history, name), sensed)
+        assert np.array_equal(getattr(history, f"true_{name}"), sensed)

@@ -15,7 +15,7 @@ def test_each_once(keys):
 
 @pytest.mark.parametrize(
     "key", ["bicycle", "speed", "rider.visual_delay", "rig.motor_lag", "start.roll_deg",
-            "pushes.impulse", "guard.torque_limit"],
+            "pushes.impulse", "guard.torque_limit", "rider.script.file", "rider.script.torque"],
 )  # fmt: skip
 def test_tables_with_a_dot(keys, key: str):
     assert keys[key].meaning

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bikesim.experiment.batch import ride_batch
 from bikesim.experiment.history import History
 from bikesim.experiment.metric_table import METRICS
 from bikesim.experiment.metrics import Metrics, measure, measure_many
@@ -37,8 +38,8 @@ def test_at_rest_nothing_is_anything(made_up):
 
 def test_root_mean_squares_of_sines(made_up):
     signals = {
-        "roll": 0.1, "roll_rate": 0.2, "steer": 0.3, "steer_rate": 0.4, "sent_torque": 0.5,
-        "rider_torque": 0.6, "y": 0.7,
+        "roll": 0.1, "roll_rate": 0.2, "true_steer": 0.3, "true_steer_rate": 0.4,
+        "sent_torque": 0.5, "rider_torque": 0.6, "y": 0.7,
     }  # fmt: skip
     waves = {n: (lambda t, a=a: a * np.sin(2 * np.pi * t)) for n, a in signals.items()}
     metrics = measure(made_up(20, **waves), PLAIN)
@@ -48,6 +49,30 @@ def test_root_mean_squares_of_sines(made_up):
     )  # fmt: skip
     for name, amplitude in zip(names, signals.values(), strict=True):
         assert getattr(metrics, name) == pytest.approx(amplitude / math.sqrt(2)), name
+
+
+def test_what_the_sensors_make_of_the_bar_is_of_no_account(made_up):
+    """Noise of 2.3 deg on a bar that turns by 0.6 deg is no steering."""
+    noise = np.random.default_rng(1).normal(0, 0.04, 2000)
+    moves = {"true_steer": lambda t: 0.01 * np.sin(t), "true_steer_rate": np.cos}
+    metrics = measure(made_up(steer=noise, steer_rate=noise, **moves), PLAIN)
+    np.testing.assert_array_equal(metrics, measure(made_up(**moves), PLAIN))
+    assert metrics.steer_reversals == 0
+
+
+def test_a_filter_in_the_sensor_is_not_in_the_steer_metrics(ridden):
+    """A slow filter hides most of a fast bar from the loop; single runs and batches agree on it."""
+    keys = {"rig": {"filter_cutoff": 5.0}, "start": {"roll_deg": 5}, "duration": 2.0}
+    record = ridden(**keys)
+    scenario = Scenario(**keys)
+    alone = measure(History.of_run(record), scenario)
+    (outcome,) = ride_batch([scenario])
+    together = measure(outcome.history, scenario)
+    true, sensed = (record.channel(n)[::10] for n in ("true_steer_rate", "steer_rate"))
+    assert np.std(sensed) < 0.9 * np.std(true)
+    for found in (alone, together):
+        assert found.steer_rate_rms == pytest.approx(np.linalg.norm(true) / math.sqrt(len(true)))
+    assert summarise(record).rms_steer == pytest.approx(alone.steer_rms, rel=1e-2)
 
 
 def test_lateral_position(made_up):
@@ -81,7 +106,7 @@ def test_reversals_and_work(made_up):
     metrics = measure(
         made_up(
             10,
-            steer=lambda t: 0.05 * np.sin(2 * np.pi * t),
+            true_steer=lambda t: 0.05 * np.sin(2 * np.pi * t),
             steer_rate=lambda t: 0.1 * np.pi * np.sin(2 * np.pi * t),  # late: of no account
             true_steer_rate=lambda t: 0.1 * np.pi * np.cos(2 * np.pi * t),
             rider_torque=lambda t: np.cos(2 * np.pi * t),

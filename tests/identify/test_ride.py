@@ -139,4 +139,14 @@ def test_rides_that_do_not_belong_together(exact: Ride, change: dict, message: s
         change = {"bicycle": bicycles.load(change["bicycle"])}
     with pytest.raises(InputError, match=f"^other: {message}"):
         check_together([exact, replace(exact, name="other", **change)])
-    check_together([exact, replace(exact, name="other", passive=Passive())])
+    mirrored = {"roll": -exact.roll, "steer": -exact.steer}
+    check_together([exact, replace(exact, name="other", passive=Passive(), **mirrored)])
+
+
+def test_a_ride_counts_once_whatever_it_is_called(exact: Ride):
+    """Whole or its beginning: of equal scenario and seed a shorter ride is part of a longer one."""
+    half = len(exact.roll) // 2
+    cut = replace(exact, name="cut", roll=exact.roll[:half], steer=exact.steer[:half])
+    for again in (replace(exact, name="copy"), cut):
+        with pytest.raises(InputError, match=f"^{again.name}: the same ride as {exact.name}"):
+            check_together([exact, again])

@@ -15,7 +15,6 @@ from bikesim.model.haptic import BicycleState
 from bikesim.record.channels import TICK_CHANNELS
 from bikesim.rider.base import Rider
 from bikesim.rider.custom import class_figures, load_class
-from bikesim.rider.kinds import beside
 from bikesim.rider.settings import RiderSettings
 
 ROLL = [channel.name for channel in TICK_CHANNELS].index("roll")
@@ -219,8 +218,6 @@ def test_a_scenario_finds_him_beside_itself(theirs: Path, monkeypatch: pytest.Mo
     scenario = theirs / "ride.toml"
     scenario.write_text('rider = "theirs.py:Mine"\n')
     assert read_toml(scenario)["rider"] == f"{theirs / 'theirs.py'}:Mine"
-    assert beside("theirs.py:Mine", folder) == "theirs.py:Mine"
-    assert beside("human", theirs) == "human"
 
 
 def test_a_run_with_him_ends_with_his_line(theirs: Path):

@@ -1,6 +1,8 @@
 """Torques by the clock: their spectra, their times, their files."""
 
+import hashlib
 import math
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +12,7 @@ import pytest
 
 from bikesim import bicycles
 from bikesim.errors import InputError
+from bikesim.experiment.batch import ride_batch
 from bikesim.experiment.run import build, ride_parts, run
 from bikesim.experiment.scenario import Scenario
 from bikesim.experiment.torque_record import with_recorded_torque
@@ -229,3 +232,48 @@ def test_a_file_that_is_no_record_is_refused(tmp_path: Path):
     )
     with pytest.raises(InputError, match="is not an HDF5 file"):
         with_recorded_torque(rider)
+
+
+class TestDigest:
+    @pytest.fixture(params=["file", "record"])
+    def scenario(self, request: pytest.FixtureRequest, tmp_path: Path) -> Scenario:
+        """Half a second of the torque of a text file, or of a record."""
+        file = tmp_path / "torque"
+        if request.param == "file":
+            file.write_text("0, 0.1\n1, -0.2\n")
+        else:
+            run(build(person(duration=0.5)), file)
+        given = script(kind=request.param, file=str(file))
+        rider = RiderSettings(name=f"torque-{request.param}", script=given)
+        return person(duration=0.5, rider=rider)
+
+    @pytest.fixture
+    def again(self, scenario: Scenario, tmp_path: Path) -> Scenario:
+        """What the record of a run says was ridden."""
+        run(build(scenario), tmp_path / "run.h5")
+        return Scenario(**tomllib.loads(open_run(tmp_path / "run.h5").scenario))
+
+    def test_of_its_file_is_in_the_record(self, again: Scenario, tmp_path: Path):
+        content = (tmp_path / "torque").read_bytes()
+        assert again.rider.script is not None
+        assert again.rider.script.digest == hashlib.sha256(content).hexdigest()
+
+    def test_lets_the_same_file_ride_again(self, again: Scenario, tmp_path: Path):
+        run(build(again), tmp_path / "again.h5")
+        assert open_run(tmp_path / "again.h5").digest() == open_run(tmp_path / "run.h5").digest()
+
+    def test_another_file_is_noticed_alone_and_in_a_batch(self, again: Scenario, tmp_path: Path):
+        file = tmp_path / "torque"
+        file.write_bytes(file.read_bytes() + b"\n")
+        for ride in (build, lambda one: ride_batch([one, one])):
+            with pytest.raises(InputError) as refused:
+                ride(again)
+            told = str(refused.value)
+            assert told.startswith(f"rider.script.file {file}: is another file than it was: ")
+            assert "\n" not in told
+
+    def test_is_not_asked_for(self, scenario: Scenario, tmp_path: Path):
+        build(scenario).rig.close()
+        file = tmp_path / "torque"
+        file.write_bytes(file.read_bytes() + b"\n")
+        build(scenario).rig.close()

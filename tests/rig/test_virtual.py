@@ -117,8 +117,8 @@ class TestBar:
 
     def test_the_steer_axis_is_the_bicycles(self, make_rig: MakeRig):
         rig = make_rig()
-        tilt = rig.data.body("head").xmat.reshape(3, 3)[:, 2]
-        assert tilt == pytest.approx([-math.sin(0.3), 0, math.cos(0.3)], abs=1e-12)
+        axis = rig.data.joint("steer").xaxis  # down, as a positive steer is to the right
+        assert axis == pytest.approx([math.sin(0.3), 0, -math.cos(0.3)], abs=1e-12)
 
     def test_a_positive_steer_turns_it_to_the_right(self, make_rig: MakeRig):
         """World: x forward, y left."""

@@ -9,8 +9,10 @@ from bikesim.errors import InputError
 from bikesim.experiment.study.crew import Crew, Lost
 from bikesim.experiment.study.folder import ResultsFolder
 from bikesim.experiment.study.keep import runs_to_keep
-from bikesim.experiment.study.plan import Batch, Study
+from bikesim.experiment.study.plan import Batch, RunId, Study
 from bikesim.experiment.study.results import read_results
+from bikesim.experiment.study.same_run import difference, note_of, rows_by_run
+from bikesim.experiment.study.trial import Trial, trials_of
 from bikesim.experiment.study.work import Done, Keep, Order, Refused, Ride, order_of, scenario_of
 from bikesim.record.output import unwritable
 
@@ -20,6 +22,21 @@ class Conducted(NamedTuple):
 
     whole: bool
     given_up: tuple[Lost, ...]
+
+
+def try_riders(study: Study, crew: Crew, interrupted: Callable[[], bool]) -> Conducted:
+    """Rides each rider of the user's own for a second, alone and in a batch.
+
+    Raises InputError for one whose rides differ: what a table says of him would be of another.
+    """
+    trials = trials_of(study)
+    if not trials:
+        return Conducted(True, ())
+    with _bar(len(trials), 0, "rider") as bar:
+        return _conduct(iter(trials), crew, _nothing_to_take, interrupted, bar, lambda: "")
+
+
+def _nothing_to_take(order: Order, done: Done, worker: str) -> None: ...
 
 
 def ride_batches(
@@ -52,8 +69,6 @@ def ride_kept(
 ) -> Conducted:
     """Rides again, alone, the runs that are to leave a record and have none. Raises InputError."""
     table = read_results(folder.path).table
-    columns = (table[name].tolist() for name in ("condition_number", "seed", "ticks"))
-    ticks = {(number, seed): ticks for number, seed, ticks in zip(*columns, strict=True)}
     keeps = [
         Keep(run, scenario_of(study.condition(run.condition).scenario, run.seed), path)
         for run in runs_to_keep(study, table)
@@ -65,20 +80,19 @@ def ride_kept(
         keeps[0].path.parent.mkdir(exist_ok=True)
     except OSError as error:
         raise unwritable(keeps[0].path, error) from error
+    rows, differing = rows_by_run(table), list[tuple[RunId, str]]()
 
     def take(order: Order, done: Done, worker: str) -> None:
         del order, worker
-        for result in done.results:
-            if ticks[result.run] != result.ticks:
-                print(
-                    f"note: run {result.run} took {result.ticks} ticks alone and "
-                    f"{ticks[result.run]} in its batch: other machines, or a rider that does not "
-                    "ride in a batch as it does alone",
-                    file=sys.stderr,
-                )
+        for result, metrics in zip(done.results, done.metrics, strict=True):
+            if how := difference(rows[result.run], result, metrics):
+                differing.append((result.run, how))
 
     with _bar(len(keeps), 0, "record") as bar:
-        return _conduct(iter(keeps), crew, take, interrupted, bar, folder.kept)
+        conducted = _conduct(iter(keeps), crew, take, interrupted, bar, folder.kept)
+    if note := note_of(differing, len(keeps)):
+        print(note, file=sys.stderr)
+    return conducted
 
 
 def _conduct(
@@ -104,7 +118,7 @@ def _conduct(
                     again.append(event.order)
                     retried.append(event.order)
             elif isinstance(event.answer, Refused):
-                raise InputError(f"{_named(event.order)}: {event.answer.why}{kept()}")
+                raise InputError(_refusal(event.order, event.answer) + kept())
             else:
                 take(event.order, event.answer, event.worker)
                 done += len(event.answer.results)
@@ -133,17 +147,27 @@ class _Left:
 
 
 def told(lost: Lost) -> str:
-    """One line for a batch that is given up."""
-    return (
-        f"{_named(lost.order)}: its worker ended twice ({lost.how}); is there enough "
-        "memory? A smaller batch_size takes less"
-    )
+    """One line for what is given up."""
+    ended = f"{_named(lost.order)}: its worker ended twice ({lost.how})"
+    if isinstance(lost.order, Trial):
+        return ended
+    return f"{ended}; is there enough memory? A smaller batch_size takes less"
+
+
+def _refusal(order: Order, answer: Refused) -> str:
+    # What a trial finds says whose it is.
+    return answer.why if isinstance(order, Trial) else f"{_named(order)}: {answer.why}"
 
 
 def _named(order: Order) -> str:
-    if isinstance(order, Ride):
-        return f"batch {order.batch.number} ({order.runs} runs, the first {order.batch.runs[0]})"
-    return f"run {order.run}, ridden for its record"
+    match order:
+        case Ride():
+            runs = f"{order.runs} runs, the first {order.batch.runs[0]}"
+            return f"batch {order.batch.number} ({runs})"
+        case Keep():
+            return f"run {order.run}, ridden for its record"
+        case Trial():
+            return f"rider {order.rider}, tried for a second"
 
 
 def _is_whole(path: Any) -> bool:

@@ -1,7 +1,11 @@
 """Workers of a Dask cluster: one that is there already, or one of this machine."""
 
 import hashlib
-from contextlib import ExitStack, suppress
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any, Self
 
 from bikesim.errors import InputError
@@ -10,9 +14,11 @@ from bikesim.experiment.study.versions import Versions
 from bikesim.experiment.study.work import Answer, Order, work
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client, Future, LocalCluster
 
 _CONNECTING = 10.0  # [s]
+_DESERTED = 60.0  # [s]; a worker that died is replaced within a few
+_ROUTES = "distributed.scheduler.http.routes"
 _TOPIC = "bikesim-progress"
 
 
@@ -30,6 +36,7 @@ class DaskCrew:
             client: Any = self._connected(opening)
             self._client = opening.enter_context(client)
             self._check()
+            self._inhabited = time.monotonic()
             self._client.subscribe_topic(_TOPIC, self._hear)
             self._open = opening.pop_all()
         return self
@@ -65,10 +72,9 @@ class DaskCrew:
         self._orders[self._client.submit(_do, order, pure=False)] = order
 
     def wait(self, seconds: float) -> list[Event]:
-        import time
-
         from distributed import wait
 
+        self._check_inhabited()
         if not self._orders:
             time.sleep(seconds)
             return []
@@ -79,9 +85,22 @@ class DaskCrew:
         return [self._event(future) for future in found.done]
 
     def stop(self) -> None:
-        """What is being ridden is given up."""
-        self._client.cancel(list(self._orders))
-        self._orders.clear()
+        """What is being ridden is given up; what has been ridden is still to be waited for."""
+        given_up = [future for future in self._orders if not future.done()]
+        self._client.cancel(given_up)
+        for future in given_up:
+            del self._orders[future]
+
+    def _check_inhabited(self) -> None:
+        """Raises InputError where all workers have gone and none has come for a while."""
+        now = time.monotonic()
+        if self.workers:
+            self._inhabited = now
+        elif now - self._inhabited > _DESERTED:
+            raise InputError(
+                f"the Dask cluster has had no worker for {_DESERTED:g} s; what was computed is "
+                "kept, the same command goes on"
+            )
 
     def _event(self, future: "Future") -> Event:
         order = self._orders.pop(future)
@@ -99,21 +118,10 @@ class DaskCrew:
         self._fractions[key] = fraction
 
     def _connected(self, opening: ExitStack) -> "Client":
-        from dask.config import set as configured
-        from distributed import Client, LocalCluster
+        from distributed import Client
 
         if self._scheduler is None:
-            # A worker that dies is told at once, as of our own. Set for as long as it is there.
-            opening.enter_context(configured({"distributed.scheduler.allowed-failures": 0}))
-            # No dashboard: its port would be another way into this machine.
-            cluster = LocalCluster(
-                n_workers=self._count,
-                threads_per_worker=1,
-                memory_limit=0,
-                dashboard_address=None,  # type: ignore[arg-type]
-                silence_logs=50,
-            )
-            return Client(opening.enter_context(cluster))
+            return Client(self._cluster(opening))
         try:
             return Client(self._scheduler, timeout=_CONNECTING)
         except (OSError, ValueError) as error:
@@ -121,6 +129,26 @@ class DaskCrew:
                 f"--scheduler {self._scheduler}: no Dask scheduler answers: "
                 f"{' '.join(str(error).split())}"
             ) from error
+
+    def _cluster(self, opening: ExitStack) -> "LocalCluster":
+        from dask.config import set as configured
+        from distributed import LocalCluster
+
+        # A worker that dies is told at once, as of our own. No dashboard, and nothing else over
+        # HTTP: another way into this machine. Set for as long as the cluster is there.
+        settings = {"distributed.scheduler.allowed-failures": 0, _ROUTES: []}
+        opening.enter_context(configured(settings))
+        with _deaf_to_interrupts():
+            cluster: Any = LocalCluster(
+                n_workers=self._count,
+                threads_per_worker=1,
+                memory_limit=0,
+                dashboard_address=None,  # type: ignore[arg-type]
+                # Its server begins all the same: where nobody is, not on a port that may be taken.
+                scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+                silence_logs=50,
+            )
+        return opening.enter_context(cluster)
 
     def _check(self) -> None:
         """Each worker must have our versions: its results stand beside those of others."""
@@ -131,6 +159,22 @@ class DaskCrew:
         for versions in theirs.values():
             if versions != ours:
                 raise InputError(f"a Dask worker has {versions}, this is {ours}")
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Processes begun inside never hear a Ctrl-C, which is for us alone, who ask them to end.
+
+    Threads and processes inherit what is blocked here, and so do the workers that one of these
+    threads begins later, in place of one that died. We hear of it when all are there.
+    """
+    # Beginning it would let interrupts through again, in the very thread that begins a worker.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _do(order: Order) -> tuple[Answer, str]:

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 PARTS, RECORDS, VIDEOS = "parts", "records", "videos"
 _LOCK = ".lock"
+_IDS = ("condition_number", "seed")
 # The manifest last: a folder that is half emptied is still known as one of ours.
 _OURS = (
     EXPERIMENT, RESULTS, TABLE, PARTS, RECORDS, VIDEOS,
@@ -71,6 +72,14 @@ def open_folder(path: Path, study: Study, *, force: bool) -> Iterator["ResultsFo
         yield folder
     finally:
         os.close(lock)
+
+
+def is_done(path: Path, study: Study) -> bool:
+    """Whether a folder has a row for each run of a study; whose they are is not asked."""
+    with suppress(InputError):
+        table = path / RESULTS
+        return table.is_file() and set(study.ids()) <= set(run_ids(read_table(table, _IDS)))
+    return False
 
 
 class ResultsFolder:
@@ -152,7 +161,7 @@ class ResultsFolder:
         done = set[RunId]()
         for path in (self.path / RESULTS, *self._parts()):
             if path.exists():
-                done.update(run_ids(read_table(path, ["condition_number", "seed"])))
+                done.update(run_ids(read_table(path, _IDS)))
         return done
 
 
@@ -201,14 +210,14 @@ def _refuse_others(path: Path) -> None:
 def _refuse_changes(path: Path, study: Study, now: Manifest, *, done: bool) -> None:
     """Results of another experiment, or of other software if there are more to come."""
     before = Manifest.read(path)
-    if before.digest != now.digest:
+    if before.digest != now.digest or changed_file(before.files, now.files):
         raise InputError(
             f"{path}: holds the results of another experiment: {_what(path, study, before, now)}; "
             "give another folder with -o, or --force to begin anew"
         )
     if before.versions != now.versions and not done:
         raise InputError(
-            f"{path}: was begun with {before.versions}, this is {now.versions}; "
+            f"{path}: was begun with {before.software}, this is {now.software}; "
             "give another folder with -o, or --force to begin anew"
         )
 

@@ -16,6 +16,8 @@ from bikesim.experiment.study.settings import Experiment
 from bikesim.experiment.study.versions import Versions
 from bikesim.record.output import put_in_place, unwritable
 from bikesim.record.provenance import source_commit
+from bikesim.rider.kinds import is_custom
+from bikesim.rider.source_files import package_version, source_files
 
 MANIFEST, EXPERIMENT = "manifest.json", "experiment.toml"
 _FORMAT = "bikesim experiment 1"
@@ -26,8 +28,9 @@ _DECISIVE = ("scenario", "factors", "conditions", "seeds", "folder")
 class Manifest(NamedTuple):
     """Which conditions and seeds, computed with what; `runs` are planned.
 
-    `digest` is of every figure of every condition, the seeds, the files that scenarios name and the
-    metrics; `files` has a digest for each of those files.
+    `digest` is of every figure of every condition, the seeds and the metrics. `files` has a digest
+    of each file that scenarios name and of each that riders of the user's own are made of, and the
+    version of each package that they come from.
     """
 
     digest: str
@@ -47,8 +50,10 @@ class Manifest(NamedTuple):
             told = [condition.name, condition.values, keys]
             digest.update(json.dumps(told, sort_keys=True).encode())
             named |= {str(path): path_digest for path, path_digest in _files(keys)}
+        for name in sorted({condition.scenario.rider.name for condition in study.conditions}):
+            named |= _of_rider(name)
         metrics = [metric.name for metric in METRICS]
-        told = [study.experiment.seeds, sorted(named.items()), metrics]
+        told = [study.experiment.seeds, metrics]
         digest.update(json.dumps(told).encode())
         return cls(
             digest=digest.hexdigest(),
@@ -71,6 +76,12 @@ class Manifest(NamedTuple):
             raise InputError(f"{folder}: is not a folder of an experiment's results") from None
         except (OSError, ValueError, TypeError, KeyError):
             raise InputError(f"{folder / MANIFEST}: is damaged, or of another bikesim") from None
+
+    @property
+    def software(self) -> str:
+        """The versions, and the commit where there is one, for a message."""
+        oid, plus, changed = (self.commit or "").partition("+")
+        return f"{self.versions}" + (f", commit {oid[:12]}{plus}{changed}" if oid else "")
 
     def write(self, folder: Path) -> None:
         """Put it into a folder of results. Raises InputError."""
@@ -120,7 +131,7 @@ def difference(before: str, after: str) -> str:
 
 
 def changed_file(before: Mapping[str, str], after: Mapping[str, str]) -> str:
-    """A file that both name, and that is another now."""
+    """A file or a version that both name, and that is another now."""
     return next((name for name in after if before.get(name, after[name]) != after[name]), "")
 
 
@@ -146,6 +157,16 @@ def _files(keys: Any) -> Iterator[tuple[Path, str]]:
             path = Path(name)
             if "." in name and len(name) < 1000 and path.is_file():
                 yield path, _digest(path)
+
+
+def _of_rider(name: str) -> dict[str, str]:
+    """The files of a rider of the user's own with their digests, and his package's version."""
+    if not is_custom(name):
+        return {}
+    found = {told: _digest(path) for told, path in source_files(name).items()}
+    if not name.rpartition(":")[0].endswith(".py") and (is_ := package_version(name)):
+        found[f"version of {name.partition('.')[0].partition(':')[0]}"] = is_
+    return found
 
 
 def _digest(path: Path) -> str:

@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 from bikesim.errors import InputError
 from bikesim.experiment.history import history_bytes
+from bikesim.experiment.study.contrasts import check_contrasts
 from bikesim.experiment.study.factors import Factor, make_factors
 from bikesim.experiment.study.grid import Condition, count_conditions, make_conditions
-from bikesim.experiment.study.settings import Contrast, Experiment
+from bikesim.experiment.study.settings import Experiment
 
 
 class RunId(NamedTuple):
@@ -100,18 +101,18 @@ def _that_fit(group: Sequence[Condition]) -> int:
     return max(1, _BATCH_MEMORY // longest)
 
 
-_BATCH_MEMORY = 512 * 2**20  # bytes of signals: 711 runs of 60 s
+_BATCH_MEMORY = 512 * 2**20  # bytes of signals: 699 runs of 60 s
 
 
 def make_study(experiment: Experiment) -> Study:
     """All conditions of an experiment. Raises InputError, also for too many runs."""
     factors = make_factors(experiment)
-    for contrast in experiment.report.contrasts:
-        _check_contrast(contrast, factors)
     runs = count_conditions(experiment, factors) * len(experiment.seeds)
     if runs > experiment.max_runs:
         raise TooManyError(runs, next(make_conditions(experiment, factors)), experiment)
-    return Study(experiment, factors, tuple(make_conditions(experiment, factors)))
+    conditions = tuple(make_conditions(experiment, factors))
+    check_contrasts(experiment, factors, conditions)
+    return Study(experiment, factors, conditions)
 
 
 class TooManyError(InputError):
@@ -120,22 +121,6 @@ class TooManyError(InputError):
     def __init__(self, runs: int, first: Condition, experiment: Experiment) -> None:
         super().__init__(f"{runs} runs: more than max_runs = {experiment.max_runs}")
         self.runs, self.scenario = runs, first.scenario
-
-
-def _check_contrast(contrast: Contrast, factors: tuple[Factor, ...]) -> None:
-    factor = next((one for one in factors if one.name == contrast.factor), None)
-    if factor is None:
-        known = ", ".join(one.name for one in factors) or "none"
-        raise InputError(f"report.contrasts: no factor {contrast.factor!r}; there are: {known}")
-    values = [level.value for level in factor.levels]
-    for level in contrast.levels:
-        if level not in values:
-            known = ", ".join(str(value) for value in values)
-            raise InputError(
-                f"report.contrasts: {contrast.factor} has no level {level!r}; it has: {known}"
-            )
-    if contrast.levels[0] == contrast.levels[1]:
-        raise InputError(f"report.contrasts: {contrast.factor}: two different levels, please")
 
 
 # A batch of fewer costs nearly as much as one of so many.

@@ -7,6 +7,7 @@ from typing import Any
 
 from bikesim import textfile
 from bikesim.errors import InputError, unknown
+from bikesim.experiment.files import beside
 from bikesim.experiment.scenario import read_toml
 from bikesim.experiment.study.settings import Experiment
 
@@ -58,31 +59,25 @@ def with_base(keys: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def found(value: Any, folder: Path | None) -> Any:
-    """What keys are set to, with the whole path of each file that is there: FILE, FILE.py:CLASS.
+    """What keys are set to, with the whole path of each file that is there.
 
     It is sought in `folder`, then in the current one, and with its whole path found from anywhere.
+    A rider's file that is nowhere is one that was in `folder`: his results may be there still.
     """
+    here = Path.cwd()
+    if folder is None:
+        return beside(value, here)
+    folder = folder.absolute()
+    return _riders_in(beside(beside(value, folder), here), folder)
+
+
+def _riders_in(value: Any, folder: Path) -> Any:
     if isinstance(value, Mapping):
-        return {key: found(one, folder) for key, one in value.items()}
+        return {key: _riders_in(one, folder) for key, one in value.items()}
     if isinstance(value, list):
-        return [found(one, folder) for one in value] if _has_text(value) else value
-    return "+".join(_path(one, folder) for one in value.split("+")) if _is_name(value) else value
-
-
-def _is_name(value: Any) -> bool:
-    return isinstance(value, str) and "." in value and len(value) < 1000 and value.isprintable()
-
-
-def _has_text(values: list[Any]) -> bool:
-    return any(isinstance(one, str | list | Mapping) for one in values)
-
-
-def _path(name: str, folder: Path | None) -> str:
-    file, colon, kind = name.partition(":")
-    for place in (folder, Path()):
-        if place is not None and file and textfile.is_there(place / file):
-            return f"{(place / file).absolute()}{colon}{kind}"
-    return name
+        return [_riders_in(one, folder) for one in value]
+    file, colon, name = value.rpartition(":") if isinstance(value, str) else ("", "", "")
+    return f"{folder / file}{colon}{name}" if file.endswith(".py") and name else value
 
 
 def merged(under: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

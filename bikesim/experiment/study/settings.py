@@ -15,15 +15,33 @@ Kept = Literal["none", "first", "falls", "all"]
 
 
 class Contrast(Settings):
-    """Two levels of a factor, compared over the same seeds at each combination of the others."""
+    """What is compared over the same seeds: two levels of a factor, or two conditions by name.
+
+    Levels are compared at each combination of the other factors.
+    """
 
     table: ClassVar[str] = "report.contrasts"
 
-    factor: str = Field(description="A factor by its name.")
-    levels: Annotated[
-        tuple[bool | int | float | str, bool | int | float | str],
-        _List,
-    ] = Field(description="Two of its levels; the difference is the second less the first.")
+    factor: str = Field(default="", description="A factor by its name.")
+    levels: Annotated[tuple[bool | int | float | str, ...], _List] = Field(
+        default=(),
+        min_length=2,
+        max_length=2,
+        description="Two of its levels; the difference is the second less the first.",
+    )
+    of: str = Field(default="", description="A condition by its name, of the grid or beside it.")
+    against: str = Field(
+        default="", description="Another; the difference is that of `of` less this one's."
+    )
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        by_level, by_name = (self.factor, self.levels), (self.of, self.against)
+        if any(by_level) == any(by_name) or not (all(by_level) or all(by_name)):
+            raise ValueError(
+                "report.contrasts: must be given: factor and levels, or of and against"
+            )
+        return self
 
 
 class ReportSettings(Settings):

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -10,6 +11,7 @@ from bikesim.errors import InputError
 from bikesim.experiment.metrics import Metrics
 from bikesim.experiment.scenario import Scenario
 from bikesim.experiment.study.plan import Batch, RunId, Study
+from bikesim.experiment.study.trial import Trial, apart
 
 # Tells how far a piece of work is, from 0 to 1, and whether it is to end.
 Report = Callable[[float], bool]
@@ -51,8 +53,8 @@ class Result(NamedTuple):
 class Done(NamedTuple):
     """What came of a ride or of a run to keep; without those that were interrupted.
 
-    `metrics` are those of each result; a run that was ridden for its record has none. `started` is
-    a time in UTC, `seconds` [s] how long it took.
+    `metrics` are those of each result; a trial has neither. `started` is a time in UTC, `seconds`
+    [s] how long it took.
     """
 
     results: tuple[Result, ...]
@@ -71,7 +73,7 @@ class Refused(NamedTuple):
     why: str
 
 
-Order = Ride | Keep
+Order = Ride | Keep | Trial
 Answer = Done | Refused
 
 
@@ -89,7 +91,13 @@ def scenario_of(scenario: Scenario, seed: int) -> Scenario:
 def work(order: Order, report: Report) -> Answer:
     """Do what is asked for. Whatever goes wrong is said in one line, never raised."""
     try:
-        return _ride(order, report) if isinstance(order, Ride) else _keep(order, report)
+        match order:
+            case Ride():
+                return _ride(order, report)
+            case Keep():
+                return _keep(order, report)
+            case Trial():
+                return _try(order, report)
     except InputError as error:
         return Refused(str(error))
     except MemoryError:
@@ -120,6 +128,8 @@ def _ride(order: Ride, report: Report) -> Done:
 
 
 def _keep(order: Keep, report: Report) -> Done:
+    from bikesim.experiment.history import History
+    from bikesim.experiment.metrics import measure
     from bikesim.experiment.run import build, run
     from bikesim.record.reader import open_run
 
@@ -129,8 +139,20 @@ def _keep(order: Keep, report: Report) -> Done:
     if ending.reason == "interrupted":
         order.path.unlink(missing_ok=True)
         return Done((), (), started, 0.0)
-    result = Result(order.run, ending.reason, open_run(order.path).ticks)
-    return Done((result,), (), started, time.perf_counter() - began)
+    record = open_run(order.path)
+    metrics = measure(History.of_run(record), order.scenario)
+    result = Result(order.run, ending.reason, record.ticks)
+    return Done((result,), (metrics,), started, time.perf_counter() - began)
+
+
+def _try(order: Trial, report: Report) -> Answer:
+    started, began = _now(), time.perf_counter()
+    pulse = Pulse(order.scenarios[0].ticks * (1 + len(order.scenarios)), report)
+    # What he does wrong in either way is told by the ride itself, with the run that it is in.
+    with suppress(InputError):
+        if told := apart(order, pulse):
+            return Refused(told)
+    return Done((), (), started, time.perf_counter() - began)
 
 
 class Pulse:

@@ -1,6 +1,6 @@
-"""Which conditions are held against each other: two levels of a factor, all else equal."""
+"""Which conditions are held against each other: two levels of a factor, or two by name."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from typing import Any, NamedTuple
 
 from bikesim.report.experiment.data import Comparison, Condition, Factor, shown
@@ -17,18 +17,31 @@ class Asked(NamedTuple):
     second: Any
 
 
-def comparisons(
-    asked: Sequence[Asked], factors: Sequence[Factor], conditions: Sequence[Condition]
-) -> tuple[Comparison, ...]:
-    """One for each pair of conditions that differ in these levels and in nothing else.
+class Named(NamedTuple):
+    """Two conditions by name, of the grid or beside it: the first is read as against the second."""
 
-    Of the grid alone: a condition beside it may differ in more than its levels say. Where nothing
-    is asked: the first level of each factor with each other, factor by factor as long as there are
-    no more than MOST.
+    of: str
+    against: str
+
+
+def comparisons(
+    asked: Sequence[Asked | Named], factors: Sequence[Factor], conditions: Sequence[Condition]
+) -> tuple[Comparison, ...]:
+    """One for each pair of conditions that differ in these levels and in nothing else, or by name.
+
+    Levels are those of the grid alone: a condition beside it may differ in more than its levels
+    say. Where nothing is asked: the first level of each factor with each other, factor by factor
+    as long as there are no more than MOST. What is asked twice is made, and counted, once.
     """
+    there = {one.name for one in conditions}
     conditions = [one for one in conditions if not one.beside]
     if asked:
-        return tuple(made for one in asked for made in _made(one, factors, conditions))
+        once: dict[tuple[str, str], Comparison] = {}
+        for one in asked:
+            by_name = isinstance(one, Named)
+            for made in _named(one, there) if by_name else _made(one, factors, conditions):
+                once.setdefault((made.first, made.second), made)
+        return tuple(once.values())
     found: list[Comparison] = []
     for factor in factors:
         first, *others = factor.levels
@@ -53,6 +66,12 @@ def _made(
         if condition.levels[at] == asked.first and other is not None:
             name = _name(at, factors, condition, other)
             yield Comparison(name, condition.name, other.name)
+
+
+def _named(asked: Named, there: Set[str]) -> Iterator[Comparison]:
+    """None as long as one of them has no run yet."""
+    if {asked.of, asked.against} <= there:
+        yield Comparison(f"{asked.of} against {asked.against}", asked.against, asked.of)
 
 
 def _but(levels: tuple[Any, ...], at: int) -> tuple[Any, ...]:

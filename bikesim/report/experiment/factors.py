@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bikesim.report.experiment.data import Data, Factor, shown
-from bikesim.report.experiment.logistic import Logistic, logistic_regression
+from bikesim.report.experiment.logistic import CONSTANT, Logistic, logistic_regression
 
 _MOST_LEVELS = 8  # of a factor with a term for each level; above it, a number on its scale
 
@@ -46,7 +46,9 @@ def regression(data: Data) -> Regression:
     columns = [(name, column) for factor in factors for name, column in _columns(data, factor)]
     names, design, left_out = _independent(columns, len(fell))
     model = logistic_regression(design, fell, names)
-    reference = tuple((factor.label, shown(factor.levels[0])) for factor in factors)
+    reference = tuple(
+        (factor.label, f"{shown(factor.levels[0])} {factor.unit}".rstrip()) for factor in factors
+    )
     return Regression(model, _fit(data, model, design), reference, left_out)
 
 
@@ -72,7 +74,7 @@ def _independent(
     columns: list[tuple[str, NDArray[np.float64]]], runs: int
 ) -> tuple[tuple[str, ...], NDArray[np.float64], tuple[str, ...]]:
     """Constant and columns, without those that follow from the ones before them."""
-    names, kept, left_out = ["constant"], [np.ones(runs)], []
+    names, kept, left_out = [CONSTANT], [np.ones(runs)], []
     for name, column in columns:
         rows = np.unique(np.column_stack([*kept, column]), axis=0)
         if np.linalg.matrix_rank(rows) == len(kept) + 1:

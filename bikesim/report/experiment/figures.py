@@ -1,19 +1,23 @@
 """The figures of an experiment: falls, metrics, contrasts, regression."""
 
+import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
-from bikesim.experiment.metric_table import BY_NAME
+from bikesim.experiment.metric_table import BY_NAME, FALL_TIME
 from bikesim.report.experiment import words
 from bikesim.report.experiment.findings import ConditionFindings, Contrast, Findings
 from bikesim.report.experiment.layout import Layout
-from bikesim.report.experiment.logistic import Term
+from bikesim.report.experiment.logistic import CONSTANT, Term
 from bikesim.report.experiment.panels import COLOURS, MARKERS, WIDTH, is_ratio, panels
 from bikesim.report.style import BLACK, BLUE, GREY, figure, label, styled
+
+_WIDE = 10.0  # largest over smallest median of a metric above which its axis is logarithmic
 
 
 class Interval(NamedTuple):
@@ -45,11 +49,15 @@ def metric_figure(findings: Findings, layout: Layout, name: str) -> Figure:
 
     def middle(one: ConditionFindings) -> Interval:
         found = one.metrics[at]
+        if found.high == math.inf:  # of the time of the fall: nobody knows when it ends
+            found = found._replace(high=one.survival.last)
         return Interval(*(metric.factor * v for v in (found.median, found.low, found.high)))
 
     with styled():
         drawn, axes = panels(layout, words.headed(metric))
         _draw(findings, layout, axes, middle)
+        _scale(axes, [middle(one).middle for one in findings.conditions])
+        _say_none(axes, "not reached" if name == FALL_TIME else "none")
     return drawn
 
 
@@ -76,14 +84,15 @@ def contrasts_figure(contrasts: Sequence[Contrast], metric: str | None = None) -
 
 def odds_figure(terms: Sequence[Term]) -> Figure:
     """The odds ratios of a fall, on a logarithmic axis; the constant is left out."""
-    terms = [term for term in terms if term.name != "constant"]
+    terms = [term for term in terms if term.name != CONSTANT]
     with styled():
         drawn = figure(WIDTH, 0.9 + 0.24 * len(terms))
         axes = drawn.subplots()
         for row, term in enumerate(terms):
             interval = Interval(*(np.exp(np.clip((term.estimate, term.low, term.high), -14, 14))))
-            _bar(axes, row, interval, BLUE if term.p < 0.05 else GREY)
+            _bar(axes, row, interval, BLUE if term.p_holm < 0.05 else GREY)
         axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
         axes.minorticks_off()
         axes.axvline(1, color=BLACK, lw=0.8)
         axes.set_yticks(range(len(terms)), [term.name for term in terms])
@@ -106,6 +115,29 @@ def _differences(
         [Interval(e.effect, e.effect_low, e.effect_high) for e in effects],
         [one.p_holm < 0.05 for one in found],
     )
+
+
+def _scale(axes: list[Axes], middles: Sequence[float]) -> None:
+    """Logarithmic where the small ones would all lie on the axis beside the large ones."""
+    values = [value for value in middles if np.isfinite(value)]
+    if not values or min(values) <= 0 or max(values) < _WIDE * min(values):
+        return
+    for one in axes:
+        one.set_yscale("log")
+        one.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        one.yaxis.set_major_formatter("{x:g}")
+        one.minorticks_off()
+
+
+def _say_none(axes: list[Axes], words: str) -> None:
+    """A panel that has nothing to show is not one that was forgotten."""
+    for one in axes:
+        drawn = (np.asarray(line.get_ydata(), float) for line in one.get_lines())
+        if not any(np.isfinite(values).any() for values in drawn):
+            one.text(
+                0.5, 0.5, words, transform=one.transAxes, ha="center", va="center", color=GREY,
+                fontsize=8,
+            )  # fmt: skip
 
 
 def _bar(axes: Axes, row: int, interval: Interval, colour: str) -> None:
@@ -156,5 +188,5 @@ def _aside(layout: Layout, place: int, colour: int, colours: int) -> float:
     values = np.array(layout.places, float)
     if is_ratio(layout.places):
         step = np.min(np.diff(np.log(np.sort(values))))
-        return float(values[place] * np.exp(0.25 * by * step))
-    return float(values[place] + 0.25 * by * np.min(np.diff(np.sort(values))))
+        return float(values[place] * np.exp(0.7 * by * step))
+    return float(values[place] + 0.7 * by * np.min(np.diff(np.sort(values))))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bikesim.experiment.metric_table import OF_ALL_RUNS
+from bikesim.experiment.metric_table import FALL_TIME, OF_ALL_RUNS
 from bikesim.report.experiment.data import Comparison, Condition, Data
 from bikesim.report.experiment.factors import Regression, regression
 from bikesim.report.experiment.pairs import PairedDifference, paired_difference
@@ -21,7 +21,10 @@ from bikesim.report.experiment.survival import Survival, kaplan_meier
 
 
 class Middle(NamedTuple):
-    """A metric over the `runs` of a condition that have it: median with its interval, quartiles."""
+    """A metric over the `runs` of a condition that have it: median with its interval, quartiles.
+
+    Of the time of the fall by Kaplan-Meier, over all runs: NaN where fewer have fallen.
+    """
 
     metric: str
     runs: int
@@ -86,13 +89,23 @@ def _of_condition(data: Data, condition: Condition) -> ConditionFindings:
     fell = data.values(condition.name, "fell") > 0
     duration = data.values(condition.name, "duration")
     whole = data.whole(condition.name)
+    survival = kaplan_meier(duration, fell)
     metrics = tuple(
-        _middle(name, values if name in OF_ALL_RUNS else values[whole])
+        _middle_fall(survival, len(fell))
+        if name == FALL_TIME
+        else _middle(name, values if name in OF_ALL_RUNS else values[whole])
         for name in data.metrics
         for values in [data.values(condition.name, name)]
     )
     falls, faults = wilson(int(fell.sum()), len(fell)), int((~whole & ~fell).sum())
-    return ConditionFindings(condition, falls, faults, kaplan_meier(duration, fell), metrics)
+    return ConditionFindings(condition, falls, faults, survival, metrics)
+
+
+def _middle_fall(survival: Survival, runs: int) -> Middle:
+    """Of the time of the fall: those who did not fall would have fallen later, or never."""
+    median, low, high = survival.median, survival.median_low, survival.median_high
+    quartiles = survival.quantile(0.25), survival.quantile(0.75)
+    return Middle(FALL_TIME, runs, median, low, high, *quartiles)
 
 
 def _middle(metric: str, values: NDArray[np.float64]) -> Middle:

@@ -6,9 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bikesim.report.experiment.rates import CONFIDENCE
+from bikesim.report.experiment.rates import CONFIDENCE, holm
 
 Reals = NDArray[np.float64]
+
+CONSTANT = "constant"
+"""The name of the term that all runs have."""
 
 _STEPS = 200
 _TOLERANCE = 1e-8
@@ -20,7 +23,8 @@ _LIMIT_ERROR = 1e-3
 class Term(NamedTuple):
     """One coefficient β: the log odds of a fall it adds, its interval, and the test of β = 0.
 
-    exp(β) is the odds ratio. A limit that the likelihood does not have is infinite.
+    exp(β) is the odds ratio. A limit that the likelihood does not have is infinite. `p_holm` is
+    corrected for the tests of all terms but the constant, of which nothing is asked: NaN.
     """
 
     name: str
@@ -28,6 +32,7 @@ class Term(NamedTuple):
     low: float
     high: float
     p: float
+    p_holm: float
 
 
 class Logistic(NamedTuple):
@@ -57,7 +62,9 @@ def logistic_regression(
     split = separated(design, fell)
     fit = _Likelihood(rows, counts, falls, penalised=split)
     best = fit.maximum()
-    terms = tuple(_term(fit, best, i, name, confidence) for i, name in enumerate(names))
+    terms = [_term(fit, best, i, name, confidence) for i, name in enumerate(names)]
+    corrected = holm([math.nan if term.name == CONSTANT else term.p for term in terms])
+    terms = tuple(term._replace(p_holm=p) for term, p in zip(terms, corrected, strict=True))
     method = "Firth" if split else "maximum likelihood"
     return Logistic(terms, len(fell), int(fell.sum()), method, split)
 
@@ -142,7 +149,8 @@ def _term(
     zero = max(fit.maximum(index, 0.0, near=start)[1] for start in (beta, None))
     p = float(stats.chi2.sf(max(0.0, 2 * (top - zero)), 1))
     low, high = (_limit(fit, index, beta, top - drop, way) for way in (-1.0, 1.0))
-    return Term(name, float(beta[index]), low, high, p)
+    estimate = float(beta[index]) if abs(beta[index]) > _TOLERANCE else 0.0
+    return Term(name, estimate, low, high, p, p_holm=math.nan)
 
 
 def _limit(fit: _Likelihood, index: int, best: Reals, level: float, way: float) -> float:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
-from bikesim.experiment.metric_table import BY_NAME, METRICS, OF_ALL_RUNS
+from bikesim.experiment.metric_table import BY_NAME, FALL_TIME, METRICS, OF_ALL_RUNS
 from bikesim.record.output import put_in_place, unwritable
 from bikesim.report.experiment import words
 from bikesim.report.experiment.data import Data, shown
@@ -23,7 +23,7 @@ from bikesim.report.experiment.findings import Findings, find
 from bikesim.report.experiment.layout import arrange
 from bikesim.report.experiment.pairs import FEWEST
 from bikesim.report.experiment.reading import read_data
-from bikesim.report.experiment.survival_figure import survival_figure
+from bikesim.report.experiment.survival_figure import survival_figure, without_bands
 from bikesim.report.experiment.told_json import told_json
 from bikesim.report.style import save, styled
 
@@ -64,20 +64,15 @@ def draw(data: Data, findings: Findings) -> Iterator[Drawn]:
         falls_figure(findings, layout),
     )
     if any(one.falls.events for one in findings.conditions):
+        bands = "" if without_bands(layout) else " Bands: 95 %, by point."
         yield Drawn(
             "survival",
-            "Share still up over time (Kaplan-Meier; runs that stayed up are censored). Bands: "
-            "95 %, by point.",
+            "Share still up over time (Kaplan-Meier; runs that stayed up are censored)." + bands,
             survival_figure(findings, layout),
         )
     for name in data.metrics:
-        which = "all runs" if name in OF_ALL_RUNS else "the runs that stayed up"
-        yield Drawn(
-            name,
-            f"{BY_NAME[name].definition} Median of {which}, with its 95 % interval; hollow: "
-            "fewer than 6 runs, so none.",
-            metric_figure(findings, layout, name),
-        )
+        told = f"{BY_NAME[name].definition} {_which_median(name)}"
+        yield Drawn(name, told, metric_figure(findings, layout, name))
     if findings.contrasts:
         yield Drawn(
             "contrasts",
@@ -90,9 +85,20 @@ def draw(data: Data, findings: Findings) -> Iterator[Drawn]:
         yield Drawn(
             "odds",
             "Odds ratios of a fall by logistic regression, with 95 % profile likelihood "
-            "intervals; blue: p < 0.05.",
+            "intervals; blue: p < 0.05 after Holm's correction.",
             odds_figure(model.terms),
         )
+
+
+def _which_median(name: str) -> str:
+    if name == FALL_TIME:
+        return (
+            "Median by Kaplan-Meier of all runs, those that stayed up censored, with its 95 % "
+            "interval, drawn to the longest ride where it has no end; none where fewer than half "
+            "fell."
+        )
+    which = "all runs" if name in OF_ALL_RUNS else "the runs that stayed up"
+    return f"Median of {which}, with its 95 % interval; hollow: fewer than 6 runs, so none."
 
 
 def page(data: Data, findings: Findings, drawn: tuple[Drawn, ...]) -> str:
@@ -102,10 +108,22 @@ def page(data: Data, findings: Findings, drawn: tuple[Drawn, ...]) -> str:
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    for filter_ in (words.number, words.percent, words.p_value, words.plain, words.headed):
+    for filter_ in (
+        words.number,
+        words.percent,
+        words.p_value,
+        words.plain,
+        words.headed,
+        words.unbroken,
+    ):
         environment.filters[filter_.__name__] = filter_
     environment.filters["shown"] = shown
-    environment.globals |= {"interval": words.interval, "odds": words.odds}
+    environment.globals |= {
+        "interval": words.interval,
+        "odds": words.odds,
+        "fall_time": words.fall_time,
+        "FALL_TIME": FALL_TIME,
+    }
     text = (files("bikesim.report.experiment") / "page.html").read_text("utf-8")
     falls = sum(one.falls.events for one in findings.conditions)
     return environment.from_string(text).render(
@@ -116,6 +134,15 @@ def page(data: Data, findings: Findings, drawn: tuple[Drawn, ...]) -> str:
         metrics=[BY_NAME[name] for name in data.metrics],
         compared=[BY_NAME[name] for name in data.metrics if name not in OF_ALL_RUNS],
         all_metrics=METRICS,
+        by_name=BY_NAME,
+        beside=any(one.beside for one in data.conditions),
+        of_all=words.listed(
+            [
+                words.plain(name)
+                for name in data.metrics
+                if name in OF_ALL_RUNS and name != FALL_TIME
+            ]
+        ),
         falls=falls,
         fewest=FEWEST,
         few=len(data.conditions) <= _FEW,

@@ -1,6 +1,7 @@
 """Two conditions over the same seeds: how much a metric differs, and how surely."""
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,8 @@ Reals = NDArray[np.float64]
 
 FEWEST = 6
 """Pairs below which nothing is tested: Wilcoxon's two-sided p cannot be under 0.05 with fewer."""
+
+_MOST_EXACT = 50  # pairs up to which ranks are counted; beyond, the normal law is as good
 
 
 class PairedDifference(NamedTuple):
@@ -72,16 +75,36 @@ def paired_difference(
 
 
 def _hodges_lehmann(change: Reals, confidence: float) -> tuple[float, float, float]:
-    """Lower limit, shift and upper limit from the Walsh averages (d_i + d_j) / 2, i ≤ j."""
+    """Lower limit, shift and upper limit from the Walsh averages (d_i + d_j) / 2, i ≤ j.
+
+    The limits leave out as many of them at each end as Wilcoxon's statistic may be without being
+    significant [Hollander, Wolfe & Chicken 2014, sec. 3.3].
+    """
     ordered = np.sort(change)
     n = len(ordered)
     count = n * (n + 1) // 2
-    spread = math.sqrt(n * (n + 1) * (2 * n + 1) / 24)
-    out = math.floor(count / 2 - normal_quantile(confidence) * spread)
-    out = max(0, min(out, (count - 1) // 2))
+    out = max(0, signed_rank_quantile(n, (1 - confidence) / 2) - 1)
     ranks = (out, (count - 1) // 2, count // 2, count - 1 - out)
     low, lower, upper, high = (_walsh_average(ordered, rank) for rank in ranks)
     return low, (lower + upper) / 2, high
+
+
+@lru_cache(maxsize=128)
+def signed_rank_quantile(pairs: int, tail: float) -> int:
+    """The smallest v with P(V ≤ v) ≥ `tail`, of Wilcoxon's signed-rank statistic V under no effect.
+
+    Counted up to 50 pairs; beyond, by the normal law with a correction for continuity.
+    """
+    if pairs > _MOST_EXACT:
+        mean = pairs * (pairs + 1) / 4
+        spread = math.sqrt(pairs * (pairs + 1) * (2 * pairs + 1) / 24)
+        return math.ceil(mean - 0.5 - normal_quantile(1 - 2 * tail) * spread)
+    chance = np.zeros(pairs * (pairs + 1) // 2 + 1)
+    chance[0] = 1.0
+    for rank in range(1, pairs + 1):  # of either sign with probability 1/2
+        chance[rank:] += chance[:-rank].copy()
+        chance /= 2
+    return int(np.searchsorted(np.cumsum(chance), tail))
 
 
 def _walsh_average(ordered: Reals, rank: int) -> float:

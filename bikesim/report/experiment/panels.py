@@ -1,5 +1,6 @@
 """The panels of an experiment's figures: their axes, colours and legend."""
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,6 +15,9 @@ COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, BLACK)
 MARKERS = "osD^vP"
 WIDTH = 7.2  # inch, of a page's text
 _MANY = 6  # numbers on an axis that still fit side by side
+_TITLE = 8  # points
+_LETTERS = 12.0  # of such a title that an inch holds
+_MARGIN = 0.08  # of the range of the numbers on an axis, on either side
 _LONG = 60  # conditions of one axis above which names no longer fit
 
 
@@ -30,11 +34,17 @@ def panels(layout: Layout, y: str) -> tuple[Figure, list[Axes]]:
     for at, (one, title) in enumerate(zip(axes, layout.panels, strict=False)):
         _axis(one, layout, tilted)
         first, lowest = at % columns == 0, at >= count - columns
-        label(one, x=along if lowest else "", y=y if first else "", title=title)
-        one.title.set_fontsize(8)
+        label(one, x=along if lowest else "", y=y if first else "", title=folded(title, columns))
+        one.title.set_fontsize(_TITLE)
     leave_out(axes, count, columns)
     legend(drawn, layout)
     return drawn, axes[:count]
+
+
+def folded(title: str, columns: int) -> str:
+    """A panel's title in lines that do not reach the next of so many panels in a row."""
+    letters = int(WIDTH * _LETTERS / columns)
+    return "\n".join(textwrap.fill(line, letters) for line in title.split("\n"))
 
 
 def leave_out(axes: Sequence[Axes], count: int, columns: int) -> None:
@@ -52,12 +62,24 @@ def _axis(axes: Axes, layout: Layout, tilted: bool) -> None:
             axes.minorticks_off()
         turn: Any = {"rotation": 45, "fontsize": 7} if len(layout.places) > _MANY else {}
         axes.set_xticks(layout.places, [shown(place) for place in layout.places], **turn)
+        axes.set_xlim(*_around(layout.places))
     else:
         names = [shown(place) for place in layout.places]
         if len(names) > _LONG:
             names = ["" for _ in names]
         turn = {"rotation": 40, "ha": "right", "fontsize": 7} if tilted else {}
         axes.set_xticks(range(len(names)), names, **turn)
+        axes.set_xlim(-0.5, len(names) - 0.5)
+
+
+def _around(places: Sequence[Any]) -> tuple[float, float]:
+    """All of an axis, those places too where nothing is drawn."""
+    low, high = float(min(places)), float(max(places))
+    if is_ratio(places):
+        by = (high / low) ** _MARGIN
+        return low / by, high * by
+    by = _MARGIN * (high - low)
+    return low - by, high + by
 
 
 def is_ratio(places: Sequence[Any]) -> bool:

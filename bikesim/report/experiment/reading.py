@@ -7,7 +7,7 @@ from bikesim.experiment.keys import scenario_keys
 from bikesim.experiment.study import grid
 from bikesim.experiment.study.manifest import EXPERIMENT, Manifest
 from bikesim.experiment.study.results import Results, read_results
-from bikesim.report.experiment.comparisons import Asked, comparisons
+from bikesim.report.experiment.comparisons import Asked, Named, comparisons
 from bikesim.report.experiment.data import Condition, Data, Factor, Kept
 
 
@@ -23,7 +23,10 @@ def read_data(folder: Path) -> Data:
         for one in results.study.conditions
         if one.name in there
     )
-    asked = [Asked(one.factor, *one.levels) for one in experiment.report.contrasts]
+    asked = [
+        Asked(one.factor, *one.levels) if one.factor else Named(one.of, one.against)
+        for one in experiment.report.contrasts
+    ]
     return Data(
         title=experiment.title or folder.resolve().name,
         description=experiment.description,

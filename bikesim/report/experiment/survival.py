@@ -15,7 +15,9 @@ class Survival(NamedTuple):
     """S(t), the share still up just after each `time` [s] of a fall, (n,), with its band.
 
     `at_risk` and `falls` at each. Before the first time S is 1. `last` [s] is the longest ride.
-    `median` [s] is the first time with S ≤ 0.5, NaN if there is none.
+    `median` [s] is the first time with S ≤ 0.5, NaN if there is none; its interval is where the
+    band holds 0.5 [Brookmeyer & Crowley 1982], infinite above where that does not end, NaN below
+    where it does not begin.
     """
 
     time: Reals
@@ -26,6 +28,12 @@ class Survival(NamedTuple):
     falls: NDArray[np.int64]
     last: float
     median: float
+    median_low: float
+    median_high: float
+
+    def quantile(self, share: float) -> float:
+        """The first time [s] by which this share has fallen; NaN where it was not reached."""
+        return _first(self.time, self.share <= 1 - share + _ROUNDING)
 
 
 def kaplan_meier(
@@ -45,9 +53,19 @@ def kaplan_meier(
         low, high = share ** np.exp(theta), share ** np.exp(-theta)
     none = share <= 0
     low[none], high[none] = np.nan, np.nan
-    reached = time[share <= 0.5 + 1e-12]
+    # Where all have fallen there is no band; the estimate itself is below any limit.
+    begins, ends = np.where(none, share, low) <= 0.5 + _ROUNDING, high < 0.5 - _ROUNDING
+    end = _first(time, ends)
     return Survival(
         time, share, low, high, at_risk, falls,
         last=float(duration.max()) if len(duration) else math.nan,
-        median=float(reached[0]) if len(reached) else math.nan,
+        median=_first(time, share <= 0.5 + _ROUNDING),
+        median_low=_first(time, begins), median_high=math.inf if math.isnan(end) else end,
     )  # fmt: skip
+
+
+_ROUNDING = 1e-12
+
+
+def _first(time: Reals, there: NDArray[np.bool_]) -> float:
+    return float(time[there.argmax()]) if there.any() else math.nan

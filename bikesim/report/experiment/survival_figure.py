@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from bikesim.report.experiment.data import shown
 from bikesim.report.experiment.findings import ConditionFindings, Findings
 from bikesim.report.experiment.layout import Layout, Mark
-from bikesim.report.experiment.panels import COLOURS, WIDTH, leave_out, legend
+from bikesim.report.experiment.panels import COLOURS, WIDTH, folded, leave_out, legend
 from bikesim.report.style import figure, label, styled
 
 _MOST_CELLS = 16  # panels of their own
@@ -20,7 +20,7 @@ def survival_figure(findings: Findings, layout: Layout) -> Figure:
     A panel for each place along the axis; where those are too many, all of its places in one panel,
     the paler the earlier.
     """
-    together = len({(mark.panel, mark.place) for mark in layout.marks}) > _MOST_CELLS
+    together = without_bands(layout)
     cells = [(mark.panel, _ALL if together else mark.place) for mark in layout.marks]
     panels = sorted(set(cells))
     last = max(one.survival.last for one in findings.conditions)
@@ -33,7 +33,7 @@ def survival_figure(findings: Findings, layout: Layout) -> Figure:
             depth = (mark.place + 1) / len(layout.places) if together else 1.0
             _survive(axes[panels.index(cell)], mark, one, last, depth, band=not together)
         for cell, one in zip(panels, axes, strict=False):
-            label(one, title=_cell_title(layout, *cell))
+            label(one, title=folded(_cell_title(layout, *cell), columns))
             one.title.set_fontsize(8)
         leave_out(axes, len(panels), columns)
         axes[0].set(ylim=(-4, 104), xlim=(0, last))
@@ -44,10 +44,16 @@ def survival_figure(findings: Findings, layout: Layout) -> Figure:
     return drawn
 
 
+def without_bands(layout: Layout) -> bool:
+    """Whether all places are in one panel, too many for each to have its band."""
+    return len({(mark.panel, mark.place) for mark in layout.marks}) > _MOST_CELLS
+
+
 def _from_pale(layout: Layout) -> str:
     first, last = layout.places[0], layout.places[-1]
     what = "" if layout.axis is None else f"{layout.axis.label} "
-    return f"from pale to dark: {what}{shown(first)} to {shown(last)}"
+    unit = "" if layout.axis is None else layout.axis.unit
+    return f"from pale to dark: {what}{shown(first)} to {shown(last)} {unit}".rstrip()
 
 
 def _survive(

@@ -1,6 +1,7 @@
 """Figures as a person reads them."""
 
 import math
+import re
 from collections.abc import Sequence
 
 from bikesim.experiment.metric_table import Metric
@@ -46,6 +47,11 @@ def interval(middle: float, low: float, high: float, factor: float = 1.0) -> str
     return f"<span>{shown[0]}</span> <span>[{shown[1]}, {shown[2]}]</span>"
 
 
+def fall_time(median: float, low: float, high: float) -> str:
+    """The time by which half have fallen [s], each an element of the page."""
+    return "<span>not reached</span>" if math.isnan(median) else interval(median, low, high)
+
+
 def odds(term: Term) -> str:
     """The odds ratio of a term, with its interval."""
     return interval(*(_exp(value) for value in (term.estimate, term.low, term.high)))
@@ -57,7 +63,15 @@ def _exp(value: float) -> float:
 
 def plain(name: str) -> str:
     """A column's name as words."""
-    return name.replace("_", " ")
+    return " ".join(_ABBREVIATED.get(word, word) for word in name.split("_"))
+
+
+_ABBREVIATED = {"rms": "RMS", "sdlp": "SDLP"}
+
+
+def unbroken(text: str) -> str:
+    """Such as: speed 2.5 m/s, the unit kept on the line of its number."""
+    return re.sub(r"(?<=\d) (?=\S+?(,|$))", "\N{NO-BREAK SPACE}", text)
 
 
 def headed(metric: Metric) -> str:

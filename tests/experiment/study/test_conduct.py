@@ -172,3 +172,25 @@ def test_kept_runs_are_the_records_of_the_table(small, tmp_path: Path):
         assert record.ticks == row["ticks"]
         assert record.seed == 1
         assert record.law == row["law"]
+
+
+def test_a_kept_run_that_is_not_that_of_the_table_is_told(
+    small, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    """As a rider would leave it who rides otherwise in a batch, for just as long."""
+    asked = small.experiment.model_copy(update={"keep": "first"})
+    study = Study(asked, small.factors, small.conditions)
+    conduct(study, tmp_path, OwnHands())
+    rows = pq.read_table(tmp_path / "results.parquet")
+    steer = [value * (1 + 1e-5 * (i == 3)) for i, value in enumerate(rows["steer_rms"].to_pylist())]
+    column = rows.column_names.index("steer_rms")
+    pq.write_table(
+        rows.set_column(column, rows.field(column), [steer]), tmp_path / "results.parquet"
+    )
+    with open_folder(tmp_path, study, force=False) as folder:
+        assert ride_kept(study, folder, OwnHands(), lambda: False).whole
+    told = capsys.readouterr().err
+    assert told.startswith(
+        "note: 1 of 4 kept runs are not those of the table, the first 2-1: steer_rms is "
+    )
+    assert told.count("\n") == 1

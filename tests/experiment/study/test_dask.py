@@ -14,7 +14,7 @@ from bikesim.experiment.study.dask_crew import DaskCrew
 from bikesim.experiment.study.folder import open_folder
 from bikesim.experiment.study.plan import Batch, RunId, Study
 from bikesim.experiment.study.results import read_results
-from bikesim.experiment.study.work import order_of
+from bikesim.experiment.study.work import Done, order_of
 
 from .crews import OwnHands
 
@@ -63,3 +63,53 @@ def test_how_far_it_is_can_be_seen_and_it_can_be_stopped(make):
         while not (events := crew.wait(1.0)):
             assert time.monotonic() < deadline
         assert isinstance(events[0], Answered)
+
+
+def test_stopped_it_still_gives_what_was_done(make):
+    long, short = (
+        order_of(study, next(study.batches(set(), 512, 1)))
+        for study in (
+            make("seeds = 1\nscenario.duration = 3600.0"),
+            make("seeds = 2\nscenario.duration = 0.1"),
+        )
+    )
+    with DaskCrew(workers=2) as crew:
+        crew.give(long)
+        crew.give(short)
+        deadline = time.monotonic() + 60
+        while not any(future.done() for future in crew._orders):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        crew.stop()
+        assert crew.busy == 1
+        (event,) = crew.wait(1.0)
+        assert isinstance(event, Answered)
+        assert isinstance(event.answer, Done)
+        assert [one.run for one in event.answer.results] == [RunId(1, 1), RunId(1, 2)]
+        assert crew.busy == 0
+
+
+def wait_for_an_hour(crew: DaskCrew) -> None:
+    for _ in range(36_000):
+        crew.wait(0.1)
+
+
+def test_a_cluster_that_all_workers_have_left_is_told(monkeypatch):
+    monkeypatch.setattr("bikesim.experiment.study.dask_crew._DESERTED", 0.5)
+    with DaskCrew(workers=1) as crew:
+        crew.wait(0.0)
+        crew._client.cluster.scale(0)
+        with pytest.raises(InputError, match=r"has had no worker for 0\.5 s; what was computed"):
+            wait_for_an_hour(crew)
+
+
+def test_its_cluster_answers_nobody_over_http():
+    from urllib.error import HTTPError
+    from urllib.request import urlopen
+
+    with DaskCrew(workers=1) as crew:
+        server = crew._client.cluster.scheduler.http_server
+        assert server.address == "127.0.0.1"
+        for page in ("", "info/main/workers.html", "health", "metrics"):
+            with pytest.raises(HTTPError, match="404"):
+                urlopen(f"http://127.0.0.1:{server.port}/{page}", timeout=10)

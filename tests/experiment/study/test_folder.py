@@ -133,10 +133,49 @@ class TestOthers:
 
     def test_other_versions_are_refused_while_runs_are_missing(self, small, tmp_path, monkeypatch):
         begin(small, tmp_path, (1, 1))
-        other = Versions("0.0.1", "4.0.0", "2.0")
+        begun, other = Versions(*_versions(tmp_path)), Versions("0.0.1", "4.0.0", "2.0", "abc")
+        monkeypatch.setattr(manifest.Versions, "gather", lambda: other)
+        monkeypatch.setattr(manifest, "source_commit", lambda root: None)
+        message = refusal(small, tmp_path)
+        assert f"was begun with {begun}" in message
+        assert f", this is {other}; give another folder with -o" in message
+
+    def test_so_is_other_code_of_one_version_which_is_told_with_its_commit(
+        self, small, tmp_path, monkeypatch
+    ):
+        monkeypatch.setattr(manifest, "source_commit", lambda root: f"{'1' * 40}+dirty")
+        begin(small, tmp_path, (1, 1))
+        begun = Versions.gather()
+        other = begun._replace(code="0123456789ab")
         monkeypatch.setattr(manifest.Versions, "gather", lambda: other)
         message = refusal(small, tmp_path)
-        assert f"was begun with {Versions(*_versions(tmp_path))}, this is {other}; " in message
+        commit = "commit 111111111111+dirty"
+        assert f"was begun with {begun}, {commit}, this is {other}, {commit}; " in message
+
+    def test_of_what_is_done_the_software_may_be_another(self, small, tmp_path, monkeypatch):
+        begin(small, tmp_path, *((c, seed) for c in (1, 2, 3, 4) for seed in (1, 2, 3)))
+        other = Versions.gather()._replace(code="0123456789ab")
+        monkeypatch.setattr(manifest.Versions, "gather", lambda: other)
+        with open_folder(tmp_path, small, force=False) as folder:
+            assert len(folder.done) == small.runs
+
+    def test_what_a_riders_file_imports_may_not_change(self, make, tmp_path: Path):
+        (tmp_path / "mine.py").write_text("from gains import GAIN\nclass Mine: ...\n")
+        (tmp_path / "gains.py").write_text("GAIN = 1.0\n")
+        study = make("seeds = 1\nscenario.rider = 'mine.py:Mine'")
+        begin(study, tmp_path / "results", (1, 1))
+        (tmp_path / "gains.py").write_text("GAIN = 2.0\n")
+        told = f"another experiment: {tmp_path / 'gains.py'} has changed; "
+        assert told in refusal(study, tmp_path / "results")
+
+    def test_nor_may_the_package_that_a_rider_comes_from(self, make, tmp_path, monkeypatch):
+        study = make("seeds = 1\nscenario.rider = 'yaml.loader:Loader'")
+        begin(study, tmp_path / "results", (1, 1))
+        monkeypatch.setattr(manifest, "package_version", lambda name: "PyYAML 0.1")
+        told = "another experiment: version of yaml has changed; "
+        assert told in refusal(study, tmp_path / "results")
+        files = json.loads((tmp_path / "results" / "manifest.json").read_text())["files"]
+        assert {"yaml/loader.py", "yaml/reader.py"} <= set(files)
 
     def test_force_begins_anew_and_removes_nothing_else(self, make, small, tmp_path: Path):
         begin(small, tmp_path, (1, 1))

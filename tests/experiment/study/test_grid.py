@@ -165,10 +165,41 @@ class TestRefused:
                 "[[report.contrasts]]\nfactor = 'law'\nlevels = ['paper', 'off']",
                 "report.contrasts: law has no level 'off'; it has: paper",
             ),
+            (
+                f"{HEAD}factors.law = ['paper']\n"
+                "[[report.contrasts]]\nfactor = 'law'\nlevels = ['paper']",
+                "report.contrasts.levels = ['paper']: must be a list of 2",
+            ),
+            (
+                f"{HEAD}factors.law = ['paper']\n[[report.contrasts]]\nof = 'law=paper'",
+                "report.contrasts: must be given: factor and levels, or of and against",
+            ),
+            (
+                f"{HEAD}factors.law = ['paper']\n[[report.contrasts]]\nof = 'law=paper'\n"
+                "against = 'law=off'\nfactor = 'law'",
+                "report.contrasts: must be given: factor and levels, or of and against",
+            ),
+            (
+                f"{HEAD}factors.law = ['paper']\n"
+                "[[report.contrasts]]\nof = 'law=off'\nagainst = 'law=paper'",
+                "report.contrasts.of: unknown condition 'law=off'; did you mean law=paper?",
+            ),
+            (
+                f"{HEAD}factors.law = ['paper']\n"
+                "[[report.contrasts]]\nof = 'law=paper'\nagainst = 'law=paper'",
+                "report.contrasts: 'law=paper': two different conditions, please",
+            ),
         ],
     )
     def test_in_one_line_that_says_what_and_where(self, make, text: str, message: str):
         assert refusal(make, text).startswith(message)
+
+    def test_of_a_great_many_conditions_a_line_names_some(self, make):
+        speeds = [k / 10 for k in range(99)]
+        text = f"{HEAD}factors.speed = {speeds}\n[[report.contrasts]]\nof = 'x'\nagainst = 'y'"
+        said = refusal(make, text)
+        assert said.startswith("report.contrasts.of: unknown condition 'x'; known: speed=0, speed=")
+        assert said.endswith("speed=5.9, and 39 more")
 
     def test_more_runs_than_allowed_are_counted_not_made(self, make):
         text = "seeds = 1000000\nfactors.speed = [3, 4]\n"

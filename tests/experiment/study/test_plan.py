@@ -13,9 +13,9 @@ def test_every_run_is_in_one_batch(small):
 
 
 def test_a_batch_of_long_runs_is_smaller(make):
-    """512 MiB of signals: of 15 at 100 Hz for an hour, 43.2 MB a run."""
+    """512 MiB of signals: of 16 at 100 Hz for an hour, 46.1 MB a run: 11 fit, 10 a share."""
     study = make("seeds = 100\nscenario.duration = 3600.0\n")
-    assert max(len(batch.runs) for batch in study.batches(set(), 512, 1)) == 12
+    assert max(len(batch.runs) for batch in study.batches(set(), 512, 1)) == 10
 
 
 def test_a_batch_has_no_more_than_asked(small):

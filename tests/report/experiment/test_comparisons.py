@@ -1,7 +1,7 @@
 import pytest
 
-from bikesim.report.experiment.comparisons import MOST, Asked, comparisons
-from bikesim.report.experiment.data import Condition, Data, Factor
+from bikesim.report.experiment.comparisons import MOST, Asked, Named, comparisons
+from bikesim.report.experiment.data import Comparison, Condition, Data, Factor
 
 
 def test_unasked_each_level_against_the_first_all_else_equal(data: Data):
@@ -53,3 +53,21 @@ def test_a_condition_beside_the_grid_takes_no_cell_of_it(data: Data):
     extra = Condition("a hard start", data.conditions[0].levels, beside=True)
     made = comparisons((), data.factors, (*data.conditions, extra))
     assert made == data.comparisons
+
+
+def test_a_condition_beside_the_grid_is_compared_by_its_name(data: Data):
+    extra = Condition("nobody", (None, True, 2.5), beside=True)
+    cell = data.conditions[0].name
+    made = comparisons([Named("nobody", cell)], data.factors, (*data.conditions, extra))
+    assert made == (Comparison(f"nobody against {cell}", first=cell, second="nobody"),)
+
+
+def test_a_condition_that_has_no_run_yet_is_not_compared(data: Data):
+    asked = [Named("nobody", data.conditions[0].name)]
+    assert comparisons(asked, data.factors, data.conditions) == ()
+
+
+def test_what_is_asked_twice_is_made_once(data: Data):
+    first, second = data.comparisons[0].first, data.comparisons[0].second
+    asked = [Asked("law", "paper", "off"), Named(second, first), Named(second, first)]
+    assert comparisons(asked, data.factors, data.conditions) == data.comparisons[:6]

@@ -1,4 +1,5 @@
 import dataclasses
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -42,10 +43,69 @@ def test_falls_over_speed_a_panel_for_each_roll_cue(data: Data):
 def test_a_metric_in_the_unit_that_a_person_reads(data: Data):
     findings = find(data)
     drawn = metric_figure(findings, arrange(data.factors, data.conditions), "roll_rms")
-    assert drawn.axes[0].get_ylabel() == "roll rms [deg]"
+    assert drawn.axes[0].get_ylabel() == "roll RMS [deg]"
     _, middle = points(drawn.axes[0])[0]
     expected = [np.degrees(findings.conditions[i].metrics[1].median) for i in range(3)]
     assert middle == pytest.approx(expected)
+
+
+def with_values(data: Data, name: str, values: np.ndarray) -> Data:
+    return dataclasses.replace(data, table=data.table.assign(**{name: values}), metrics=(name,))
+
+
+def test_small_values_beside_large_ones_are_seen(data: Data):
+    """A decade or more between them: on a logarithmic axis, unless some are not above 0."""
+    layout = arrange(data.factors, data.conditions)
+    values = 0.1 * data.table["speed"].to_numpy() ** 3
+    for changed, scale in ((values, "log"), (values - 2, "linear"), (values**0.5, "linear")):
+        changed_data = with_values(data, "steer_rms", changed)
+        drawn = metric_figure(find(changed_data), layout, "steer_rms")
+        assert [axes.get_yscale() for axes in drawn.axes] == [scale, scale]
+
+
+def test_a_panel_without_a_value_says_so(data: Data):
+    layout = arrange(data.factors, data.conditions)
+    lit = data.table["vision.roll_cue"].to_numpy(bool)
+    changed_data = with_values(data, "steer_rms", np.where(lit, np.nan, 1.0))
+    drawn = metric_figure(find(changed_data), layout, "steer_rms")
+    assert [[text.get_text() for text in axes.texts] for axes in drawn.axes] == [["none"], []]
+
+
+def test_titles_of_panels_do_not_reach_the_next_one(data: Data):
+    long = tuple(one._replace(levels=(*one.levels[:2], None)) for one in data.conditions)
+    drawn = survival_figure(find(data), arrange(data.factors, long))
+    drawn.draw_without_rendering()
+    visible = [axes for axes in drawn.axes if axes.get_visible()]
+    assert len(visible) == len(long)
+    for left, right in pairwise(visible):
+        box, after = left._left_title.get_window_extent(), right.get_window_extent()  # type: ignore[attr-defined]
+        assert box.x1 < after.x0 or after.x0 < box.x0  # or the next row
+
+
+def test_every_condition_has_its_place_on_the_axis(data: Data):
+    """Also at the ends, where nobody has the metric."""
+    law = (Factor("law", "law", "", ("paper", "off", "momentum")),)
+    made = tuple(Condition(level, (level,)) for level in law[0].levels)
+    rows = data.table[data.table["condition"] == data.conditions[0].name]
+    table = pd.concat([rows.assign(condition=one.name, law=one.name) for one in made])
+    table.loc[table["law"] != "off", "roll_rms"] = np.nan
+    three = dataclasses.replace(data, factors=law, conditions=made, table=table, comparisons=())
+    drawn = metric_figure(find(three), arrange(law, made), "roll_rms")
+    low, high = drawn.axes[0].get_xlim()
+    assert low < 0
+    assert high > 2
+
+
+def test_an_interval_of_the_fall_time_without_an_end_ends_with_the_longest_ride(data: Data):
+    table = data.table.copy()
+    late = (table["condition"] == data.conditions[6].name) & (table["seed"] > 6)
+    table.loc[late, ["fell", "fall_time", "duration", "ending"]] = [0, np.nan, 20, "end of run"]
+    findings = find(dataclasses.replace(data, table=table))
+    assert findings.conditions[6].metrics[0].high == np.inf
+    drawn = metric_figure(findings, arrange(data.factors, data.conditions), "fall_time")
+    paths = [path for drawn_one in drawn.axes[0].collections for path in drawn_one.get_paths()]
+    ends = [np.asarray(path.vertices, float)[:, 1].max() for path in paths]
+    assert np.nanmax(ends) == 20
 
 
 def test_survival_a_panel_for_each_cell(data: Data):
@@ -79,7 +139,7 @@ def test_contrasts_of_falls_and_of_a_metric(data: Data):
     assert names == [one.name for one in data.comparisons]
     assert drawn.axes[0].get_xlabel() == "difference in falls [percentage points]"
     effect = contrasts_figure(contrasts, "roll_rms")
-    assert effect.axes[0].get_xlabel() == "roll rms: effect $d_z$"
+    assert effect.axes[0].get_xlabel() == "roll RMS: effect $d_z$"
 
 
 def test_odds_without_the_constant_on_a_logarithmic_axis(data: Data):

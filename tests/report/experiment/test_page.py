@@ -1,3 +1,4 @@
+import dataclasses
 import json
 import math
 import re
@@ -5,11 +6,12 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
 
+import pandas as pd
 import pytest
 
 from bikesim.cli.main import main
 from bikesim.errors import InputError
-from bikesim.report.experiment.data import Data
+from bikesim.report.experiment.data import Condition, Data
 from bikesim.report.experiment.findings import find
 from bikesim.report.experiment.page import draw, page, write_report
 from bikesim.report.experiment.told_json import told_json
@@ -79,6 +81,37 @@ def test_it_says_what_was_asked_and_found(text: str):
         assert words in told, words
 
 
+def test_a_metric_that_nothing_can_be_compared_in_has_no_empty_table(data: Data):
+    lacking = dataclasses.replace(data, metrics=("roll_rms", "handling_quality"))
+    findings = find(lacking)
+    told = Page(page(lacking, findings, tuple(draw(lacking, findings)))).text
+    assert told.count("No contrast has 6 pairs") == 1
+    assert told.count("mean difference") == 1
+
+
+def test_the_fall_time_is_not_told_twice_nor_of_the_fallen_alone(text: str):
+    table = text[text.index('id="conditions"') : text.index('id="falls"')]
+    assert "fall time" not in table
+    assert table.count("not reached") == 10
+    assert "Median by Kaplan-Meier of all runs" in text
+
+
+def test_a_condition_beside_the_grid_is_called_by_its_name(data: Data):
+    """Also one that has a level of every factor, as a cell of the grid has."""
+    cell = data.conditions[0]
+    rows = data.table[data.table["condition"] == cell.name].assign(condition="a hard start")
+    more = dataclasses.replace(
+        data,
+        conditions=(*data.conditions, Condition("a hard start", cell.levels, beside=True)),
+        table=pd.concat([data.table, rows]),
+    )
+    findings = find(more)
+    made = page(more, findings, tuple(draw(more, findings)))
+    table = made[made.index('id="conditions"') : made.index('id="falls"')]
+    assert table.count("a hard start") == 1
+    assert cell.name not in table
+
+
 def test_each_condition_is_a_row(text: str):
     table = text[text.index('id="conditions"') : text.index('id="falls"')]
     assert table.count("<tr>") == 1 + 12
@@ -135,7 +168,14 @@ law = "off"
 
 [report]
 metrics = ["fall_time"]
-contrasts = [{ factor = "haptics", levels = ["on", "off"] }]
+contrasts = [
+    { factor = "haptics", levels = ["on", "off"] },
+    { of = "upright", against = "haptics=on, visual_delay=0.1" },
+]
+
+[[conditions]]
+name = "upright"
+set = { start = { roll_deg = 0 } }
 """
 
 
@@ -151,8 +191,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_folder_of_results_gets_its_report(folder: Path):
     made = Page((folder / "report.html").read_text("utf-8"))
     told = " ".join(made.text.split())
-    assert "4 conditions 2 seeds each 8 runs" in told
+    assert "5 conditions 2 seeds each 10 runs" in told
     assert "haptics off against on, where visual delay 0.1 s" in told
+    assert "upright against haptics=on, visual_delay=0.1" in told
+    programs = json.loads((folder / "statistics.json").read_text("utf-8"))
+    assert [one["comparison"]["second"] for one in programs["contrasts"]][2:] == ["upright"]
     assert "visual delay against" not in told
     for link in made.links:
         assert link.startswith("#") or (folder / unquote(link)).exists(), link

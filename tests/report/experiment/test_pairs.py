@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from bikesim.report.experiment.pairs import FEWEST, paired_difference
+from bikesim.report.experiment.pairs import FEWEST, paired_difference, signed_rank_quantile
 
 # Hamilton depression scores before and after a tranquilliser: Hollander, Wolfe & Chicken 2014,
 # Table 3.1 and Examples 3.1, 3.3 and 3.4.
@@ -18,6 +18,42 @@ def test_a_published_example():
     assert found.p_wilcoxon == pytest.approx(0.039, abs=5e-4)
     assert found.median == pytest.approx(-0.46, abs=5e-4)
     assert (found.median_low, found.median_high) == pytest.approx((-0.786, -0.010), abs=5e-4)
+
+
+# Largest W that is significant at 0.05, two-sided [McCornack 1965; Zar 2010, Table B.12].
+CRITICAL = {
+    6: 0, 7: 2, 8: 3, 9: 5, 10: 8, 11: 10, 12: 13, 13: 17, 14: 21, 15: 25, 16: 29, 17: 34, 18: 40,
+    19: 46, 20: 52, 21: 58, 22: 65, 23: 73, 24: 81, 25: 89,
+}  # fmt: skip
+
+
+def test_critical_values_are_those_of_the_published_table():
+    assert {n: signed_rank_quantile(n, 0.025) - 1 for n in CRITICAL} == CRITICAL
+
+
+def test_the_normal_law_goes_on_where_counting_ends():
+    """Against counts in whole numbers, of any number of pairs."""
+    for n in (51, 75, 120):
+        ways = [1]
+        for rank in range(1, n + 1):
+            ways = [
+                (ways[v] if v < len(ways) else 0) + (ways[v - rank] if v >= rank else 0)
+                for v in range(len(ways) + rank)
+            ]
+        below, v = ways[0], 0
+        while 40 * below < 2**n:
+            v += 1
+            below += ways[v]
+        assert abs(signed_rank_quantile(n, 0.025) - v) <= 1
+
+
+@pytest.mark.parametrize("n", [6, 7, 8, 12, 30, 50])
+def test_the_interval_is_what_the_exact_test_does_not_reject(n: int):
+    change = np.random.default_rng(n).normal(0.4, 1, n)
+    found = paired_difference(np.zeros(n), change)
+    for limit, out in ((found.median_low, -1e-9), (found.median_high, 1e-9)):
+        assert stats.wilcoxon(change - limit - out, method="exact").pvalue < 0.05
+        assert stats.wilcoxon(change - limit + out, method="exact").pvalue >= 0.05
 
 
 def test_all_walsh_averages_sorted_give_the_same():

@@ -27,6 +27,28 @@ def test_a_published_curve():
     assert found.median == 23
 
 
+# Of the 21 patients with a placebo; the medians and their intervals on the log-log scale are
+# published as 23 [13, not reached] and 8 [4, 11] weeks.
+PLACEBO = [1, 1, 2, 2, 3, 4, 4, 5, 5, 8, 8, 8, 8, 11, 11, 12, 12, 15, 17, 22, 23]
+
+
+def test_published_medians_with_their_intervals():
+    found = kaplan_meier(*remission())
+    assert (found.median, found.median_low, found.median_high) == (23, 13, math.inf)
+    assert (found.quantile(0.25), math.isnan(found.quantile(0.75))) == (13, True)
+    found = kaplan_meier(np.array(PLACEBO, float), np.ones(len(PLACEBO), bool))
+    assert (found.median, found.median_low, found.median_high) == (8, 4, 11)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_interval_of_the_median_is_that_of_statsmodels(seed: int):
+    random = np.random.default_rng(seed)
+    time, until = random.exponential(5, 40), random.uniform(2, 12, 40)
+    duration, fell = np.minimum(time, until), time <= until
+    found, other = kaplan_meier(duration, fell), SurvfuncRight(duration, fell)
+    assert (found.median_low, found.median_high) == other.quantile_ci(0.5, method="cloglog")
+
+
 def test_the_band_is_greenwoods_on_the_log_log_scale():
     weeks, ended = remission()
     found = kaplan_meier(weeks, ended)
@@ -49,3 +71,4 @@ def test_nobody_fell():
     assert len(found.time) == 0
     assert found.last == 20
     assert math.isnan(found.median)
+    assert (math.isnan(found.median_low), found.median_high) == (True, math.inf)

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from bikesim.experiment.metric_table import BY_NAME
-from bikesim.report.experiment.words import headed, interval, number, p_value, percent
+from bikesim.report.experiment.words import headed, interval, number, p_value, percent, unbroken
 
 
 @pytest.mark.parametrize(
@@ -40,5 +40,10 @@ def test_interval():
 
 
 def test_metrics_are_headed_in_the_unit_that_is_shown():
-    assert headed(BY_NAME["roll_rms"]) == "roll rms [deg]"
+    assert headed(BY_NAME["roll_rms"]) == "roll RMS [deg]"
     assert headed(BY_NAME["fell"]) == "fell"
+
+
+def test_a_unit_stays_with_its_number():
+    told = "off against 2 m, where speed 2.5 m/s, roll cue on"
+    assert unbroken(told) == "off against 2\xa0m, where speed 2.5\xa0m/s, roll cue on"
