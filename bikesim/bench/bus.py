@@ -1,9 +1,11 @@
 """A python-can bus as the loop's port, and how it is opened."""
 
+import os
 import select
+import stat
 import time
 from collections.abc import Callable, Container, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field
@@ -45,12 +47,16 @@ class BusSettings(Settings):
         return f"bus {self.interface} {self.channel}"
 
 
+# How much later than asked for a wait for frames may end [s]: the system's own is exact, that of an
+# interface may go by milliseconds or poll.
+_PROMPT, _LATE = 80e-6, 200e-6
+
 # These have no bit rate, or it is set outside; python-can warns of a key that it does not know.
 _FLUSH = 0.2  # s, at most
 _WITHOUT_BITRATE = ("virtual", "udp_multicast", "socketcan")
 
 
-def open_bus(settings: BusSettings) -> "can.ThreadSafeBus":
+def open_bus(settings: BusSettings) -> "can.BusABC":
     """The bus, without a filter. Raises InputError."""
     import can
     from can.interfaces import VALID_INTERFACES
@@ -62,11 +68,23 @@ def open_bus(settings: BusSettings) -> "can.ThreadSafeBus":
         arguments["bitrate"] = settings.bitrate
     try:
         with _quiet():
+            if settings.interface == "slcan":
+                from bikesim.bench.slcan import SlcanBus
+
+                return SlcanBus(settings.channel, **arguments)
             return can.ThreadSafeBus(
                 interface=settings.interface, channel=settings.channel, **arguments
             )
     except Exception as error:  # each interface raises its own
         raise InputError(f"{settings}: cannot be opened: {told(error)}") from None
+
+
+def close_bus(bus: "can.BusABC") -> None:
+    """Whether it is open, closed already, or gone."""
+    import can
+
+    with suppress(can.CanError, OSError):
+        bus.shutdown()
 
 
 def filter_for(bus: "can.BusABC", ids: Iterable[int] | None) -> None:
@@ -95,21 +113,30 @@ def _quiet() -> Iterator[None]:
 class BusPort:
     """The loop's port: frames of `ids` are received, others passed over; see `Port`.
 
-    What is sent and received is handed to `log` too, if there is one. It belongs to one thread.
+    What is sent and received is handed to `log` too, if there is one; it must not keep the loop,
+    nor change the message. It belongs to one thread.
     """
 
     def __init__(
         self,
         bus: "can.BusABC",
         ids: Container[int],
-        log: "Callable[[can.Message], object] | None" = None,
+        log: "Callable[[can.Message, float | None], object] | None" = None,
+        echoed: Iterable[int] = (),
     ) -> None:
+        """`log` takes a message, and when it was sent [s since 1970]; None: it was received.
+
+        Frames of `echoed` come back from the bus: as many as were sent of each are passed over.
+        """
         import can
 
         # Without the locks of a bus that many threads share.
         self._bus: can.BusABC = getattr(bus, "__wrapped__", bus)
         self._ids, self._log = ids, log
-        self._waiting = _poll(self._bus)
+        self._own = dict.fromkeys(echoed, 0)
+        """How many have been sent that have not come back."""
+        self._wait = _waiting(self._bus)
+        self.wakes_late = _LATE if self._wait is None else _PROMPT
         self._error_of: tuple[type[Exception], ...] = (can.CanError, OSError)
         self.trouble = ""
 
@@ -122,15 +149,28 @@ class BusPort:
             except self._error_of as error:
                 self.trouble = f"cannot send: {told(error)}"
                 return
+            if frame.id in self._own:
+                self._own[frame.id] += 1
             if self._log is not None:
-                message.timestamp = time.time()
-                message.is_rx = False
-                self._log(message)
+                self._log(message, time.time())
 
     def receive(self, timeout: float) -> Frame | None:
         """The next frame; None if there is none within `timeout` [s], or the bus is in trouble."""
-        if timeout == 0.0 and self._waiting is not None and not self._waiting(0):
-            return None  # asked of the system alone, in a tenth of the time
+        wait = self._wait
+        if wait is None:
+            return self._receive(timeout)
+        if timeout <= 0.0:
+            # The system is asked, which takes a tenth of the time that the bus would.
+            return self._receive(0.0) if wait(0.0) else None
+        deadline = time.perf_counter() + timeout
+        while wait(max(timeout, 0.0)):
+            frame = self._receive(0.0)
+            if frame is not None or self.trouble:
+                return frame
+            timeout = deadline - time.perf_counter()
+        return None
+
+    def _receive(self, timeout: float) -> Frame | None:
         deadline = time.perf_counter() + timeout
         left = timeout
         while (message := self._next(left)) is not None:
@@ -145,10 +185,11 @@ class BusPort:
         end = time.perf_counter() + _FLUSH
         while time.perf_counter() < end and self._next(0.0) is not None:
             pass
+        self._own = dict.fromkeys(self._own, 0)
 
     def close(self) -> None:
         """Once is enough."""
-        self._bus.shutdown()
+        close_bus(self._bus)
 
     def _next(self, timeout: float) -> "can.Message | None":
         try:
@@ -160,24 +201,42 @@ class BusPort:
     def _taken(self, message: "can.Message") -> Frame | None:
         if message.is_error_frame:
             self.trouble = "error frames: wiring, termination, or a wrong bit rate"
-        elif message.arbitration_id in self._ids:
+        elif message.arbitration_id in self._ids and not self._came_back(message.arbitration_id):
             if self._log is not None:
-                self._log(message)
+                self._log(message, None)
             return from_message(message)
         return None
 
+    def _came_back(self, identifier: int) -> bool:
+        """Whether it is this port's own. One that the bus lost lets one of another pass for it."""
+        outstanding = self._own.get(identifier, 0)
+        if outstanding:
+            self._own[identifier] = outstanding - 1
+        return outstanding > 0
 
-def _poll(bus: "can.BusABC") -> Callable[[int], object] | None:
-    """What says whether something waits to be read, where the bus is a file for the system."""
+
+def _waiting(bus: "can.BusABC") -> Callable[[float], object] | None:
+    """What waits for so long [s] for something to read, where the bus is a socket.
+
+    Of a serial line something may have been read already that nobody has taken yet.
+    """
     try:
         number = bus.fileno()
     except NotImplementedError:
         return None
-    if number < 0 or not hasattr(select, "poll"):
+    if number < 0 or not stat.S_ISSOCK(os.fstat(number).st_mode) or not hasattr(select, "poll"):
         return None
     poll = select.poll()
     poll.register(number, select.POLLIN | select.POLLERR | select.POLLHUP)
-    return poll.poll
+    look, sources = poll.poll, (number,)
+
+    def wait(timeout: float) -> object:
+        # poll() is quicker to ask, but waits for whole milliseconds; select() for microseconds.
+        if timeout <= 0.0:
+            return look(0)
+        return select.select(sources, (), (), timeout)[0]
+
+    return wait
 
 
 def told(error: Exception) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from bikesim.bench.bus import BusPort, filter_for, open_bus
+from bikesim.bench.bus import filter_for, open_bus
 from bikesim.bench.calibrate import Calibrated, Held, Swings, calibrated
 from bikesim.bench.calibration import CalibrationClient, NodeCalibration
 from bikesim.bench.continuity import BadFrame
@@ -13,7 +13,7 @@ from bikesim.bench.database import STEER_REPLY, STEER_STATE, message
 from bikesim.bench.drives import make_drive
 from bikesim.bench.link import BusLink, Link, until
 from bikesim.bench.profile import BenchSettings
-from bikesim.bench.ride import Parts, on_the_bus, wanted_ids
+from bikesim.bench.ride import Parts, loop_port, on_the_bus
 from bikesim.bench.sensor_node import SteerDecoder, SteerReading
 from bikesim.clock import RealTimeClock
 from bikesim.errors import InputError
@@ -122,7 +122,7 @@ def encoder_angle(bench: BenchSettings) -> float:
     """What the drive's encoder says of the bar now [rad], the drive disabled. Raises InputError."""
     drive = make_drive(bench.drive)
     with on_the_bus(bench, drive, lambda line: None) as bus:
-        port = BusPort(bus, wanted_ids(bench, drive))
+        port = loop_port(bus, bench, drive)
         parts = Parts(bench, drive, port, RealTimeClock(bench.period))
         try:
             parts.rig.begin()

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from bikesim.bench.bus import BusPort, filter_for, open_bus
+from bikesim.bench.bus import close_bus, filter_for, open_bus
 from bikesim.bench.continuity import BadFrame, Flaw
 from bikesim.bench.database import STEER_STATE, WHEEL_SPEED, cycle_time, message
 from bikesim.bench.drive import Drive
@@ -15,7 +15,7 @@ from bikesim.bench.drives import make_drive
 from bikesim.bench.frame import from_message
 from bikesim.bench.preflight import checked_load
 from bikesim.bench.profile import BenchSettings, bench_path
-from bikesim.bench.ride import Parts, wanted_ids
+from bikesim.bench.ride import Parts, loop_port
 from bikesim.bench.sensor_node import SteerDecoder, SteerReading
 from bikesim.bench.wheel_node import WheelDecoder, WheelReading
 from bikesim.clock import RealTimeClock
@@ -55,7 +55,7 @@ def check(bench: BenchSettings, *, pulse: bool = False) -> list[Finding]:
         if all(one.good for one in findings):
             findings += _of_drive(bus, bench, drive, pulse=pulse)
     finally:
-        bus.shutdown()
+        close_bus(bus)
     return findings
 
 
@@ -194,9 +194,7 @@ def _of_drive(
     if not pulse:
         return findings
     with real_time():
-        parts = Parts(
-            bench, drive, BusPort(bus, wanted_ids(bench, drive)), RealTimeClock(bench.period)
-        )
+        parts = Parts(bench, drive, loop_port(bus, bench, drive), RealTimeClock(bench.period))
         try:
             parts.arm()
             findings.append(Finding(True, "commissioning pulse", parts.pulse(), "within 30 %"))

@@ -8,6 +8,7 @@ COUNTS = 15  # the counter goes 0 to 14
 TIME_UNIT = 1e-5  # s
 _WRAP = 65536
 _SHORT = 0.3  # s, less than half a wrap-around
+_ALIKE = 0.75  # frames; a wrap moves the counter by 4.6 of 15 (node) or 5.5 (wheel)
 
 
 class Flaw(Enum):
@@ -39,8 +40,7 @@ class Continuity:
     """
 
     def __init__(self, period: float) -> None:
-        self._period = period
-        self._half_lap = COUNTS / 2 * period / TIME_UNIT
+        self._step = period / TIME_UNIT
         self._counter = -1
         self._ticks = 0  # unwrapped, in TIME_UNIT
         self._arrival = -math.inf
@@ -50,27 +50,39 @@ class Continuity:
         steps = (counter - self._counter) % COUNTS
         passed = (ticks - self._ticks) % _WRAP
         # The usual case, without what only a long gap needs: this is done in each tick.
-        if not (steps and 0 < passed < self._half_lap and arrival - self._arrival < _SHORT):
+        off = passed - steps * self._step
+        if not (steps and abs(off) < 0.5 * self._step and arrival - self._arrival < _SHORT):
             if self._counter < 0:
                 self._keep(counter, ticks, arrival)
                 return Passage(ticks * TIME_UNIT, 0)
-            passed = self._unwrapped(passed, arrival)
+            passed = self._unwrapped(steps, passed, arrival)
             # The time tells how often the counter went around.
-            laps = round((passed * TIME_UNIT / self._period - steps) / COUNTS)
+            laps = round((passed / self._step - steps) / COUNTS)
             steps += COUNTS * max(laps, 0)
         # What comes next is measured against this frame, bad or not: a counter that stands
         # still while the time goes on must not look like a lap after half a lap's time.
-        self._keep(counter, self._ticks + max(passed, 0), arrival)
+        self._keep(counter, self._ticks + passed, arrival)
         if steps == 0:
             return Flaw.REPEATED
         if passed <= 0:
             return Flaw.FROZEN
         return Passage(self._ticks * TIME_UNIT, steps - 1)
 
-    def _unwrapped(self, passed: int, arrival: float) -> int:
-        """The node's time since the last frame; of those that differ by a wrap, the nearest."""
+    def _unwrapped(self, steps: int, passed: int, arrival: float) -> int:
+        """The node's time since the last frame: of those that differ by a wrap the nearest to the
+        host's for which the counter has moved as far as it did.
+
+        By the host's clock alone a frame that waited in a buffer would seem a wrap later than it
+        is, and the first one after a buffer that was full a wrap earlier, long past.
+        """
         waited = (arrival - self._arrival) / TIME_UNIT
-        return passed + _WRAP * round((waited - passed) / _WRAP)
+        near = round((waited - passed) / _WRAP)
+        for wraps in (near, near - 1, near + 1, near - 2, near + 2):
+            found = passed + _WRAP * wraps
+            off = found / self._step - steps
+            if abs(off - COUNTS * round(off / COUNTS)) < _ALIKE:
+                return found
+        return passed + _WRAP * near
 
     def _keep(self, counter: int, ticks: int, arrival: float) -> None:
         self._counter, self._ticks, self._arrival = counter, ticks, arrival

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from bikesim.bench.bus import open_bus
+from bikesim.bench.bus import close_bus, open_bus
 from bikesim.bench.database import STEER_COMMAND, message
 from bikesim.bench.display import ScreenReader, screen_name
 from bikesim.bench.drives import make_drive
@@ -128,4 +128,4 @@ def emulated_bus(bench: BenchSettings) -> "Iterator[can.BusABC]":
     try:
         yield bus
     finally:
-        bus.shutdown()
+        close_bus(bus)

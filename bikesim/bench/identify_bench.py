@@ -3,14 +3,13 @@
 import math
 from collections.abc import Callable, Sequence
 
-from bikesim.bench.bus import BusPort
 from bikesim.bench.drives import make_drive
 from bikesim.bench.guard import BenchGuard
 from bikesim.bench.identify import BarFigures
 from bikesim.bench.identify_excitation import Excitation, excite
 from bikesim.bench.identify_model import BarRecord
 from bikesim.bench.profile import BenchSettings
-from bikesim.bench.ride import Parts, Say, on_the_bus, wanted_ids
+from bikesim.bench.ride import Parts, Say, loop_port, on_the_bus
 from bikesim.bench.stopping import Stopping
 from bikesim.clock import RealTimeClock
 from bikesim.model.haptic import BicycleState
@@ -38,7 +37,7 @@ def excite_bench(
         ask(f"bar straight and free, {weights}, HANDS OFF; then Enter")
         drive = make_drive(bench.drive)
         with on_the_bus(bench, drive, say) as bus, real_time():
-            port = BusPort(bus, wanted_ids(bench, drive))
+            port = loop_port(bus, bench, drive)
             parts = Parts(bench, drive, port, RealTimeClock(bench.period))
             try:
                 parts.arm()

@@ -28,24 +28,63 @@ def monitors(
     """
     t = thresholds
     return (
-        emergency_stop,
-        bus_trouble,
-        second_master,
-        drive_error,
-        drive_trouble,
-        _DriveSilent(t.drive_age, t.drive_heartbeats * heartbeat_period),
-        FrameLost(t.hold_age, t.ramp_age, t.zero_age),
-        InARow(2, "with a wrong checksum", lambda o: o.bad_frames, t.bad_frames),
-        InARow(3, "repeated or frozen", lambda o: o.frozen_frames, t.frozen_frames),
-        sensor_flags,
+        AtOnce(t, heartbeat_period),
         AngleStep(t.angle_step, period),
         Slip(t.slip_rate, t.slip_time),
         Bias(t.bias_angle, t.bias_time),
-        _OverAngle(math.radians(t.trip_angle_deg)),
         _OverSpeed(t.trip_rate, t.trip_rate_time),
         _NotFollowed(t.follow_error, t.follow_time),
         _Overrun(t.late, t.late_ticks, t.late_most),
     )
+
+
+class AtOnce:
+    """Those that remember nothing: the gravest of what one observation shows.
+
+    They are asked one by one only where anything is out of bounds, which is seldom; a tick has
+    better things to do.
+    """
+
+    def __init__(self, t: Thresholds, heartbeat_period: float) -> None:
+        self._drive_age, self._hold_age = t.drive_age, t.hold_age
+        self._heartbeat_age = t.drive_heartbeats * heartbeat_period
+        self._bad_frames, self._frozen_frames = t.bad_frames, t.frozen_frames
+        self._angle = math.radians(t.trip_angle_deg)
+        self.each: tuple[Monitor, ...] = (
+            emergency_stop,
+            bus_trouble,
+            second_master,
+            drive_error,
+            drive_trouble,
+            _DriveSilent(t.drive_age, self._heartbeat_age),
+            FrameLost(t.hold_age, t.ramp_age, t.zero_age),
+            InARow(2, "with a wrong checksum", lambda o: o.bad_frames, t.bad_frames),
+            InARow(3, "repeated or frozen", lambda o: o.frozen_frames, t.frozen_frames),
+            sensor_flags,
+            _OverAngle(self._angle),
+        )
+
+    def __call__(self, o: Observation) -> Fault | None:
+        if (
+            o.estop_closed
+            and o.pot_ok
+            and o.gyro_ok
+            and o.vref_ok
+            and not (o.bus_trouble or o.second_master or o.drive_error or o.drive_trouble)
+            and o.drive_age <= self._drive_age
+            and o.drive_heartbeat_age <= self._heartbeat_age
+            and o.age <= self._hold_age
+            and o.bad_frames < self._bad_frames
+            and o.frozen_frames < self._frozen_frames
+            and -self._angle <= o.steer <= self._angle
+        ):
+            return None
+        gravest: Fault | None = None
+        for look in self.each:
+            fault = look(o)
+            if fault is not None and (gravest is None or fault.reaction > gravest.reaction):
+                gravest = fault
+        return gravest
 
 
 def emergency_stop(o: Observation) -> Fault | None:
@@ -117,15 +156,15 @@ class _DriveSilent:
         self._data, self._heartbeat = data, heartbeat
 
     def __call__(self, o: Observation) -> Fault | None:
-        named = (
-            ("data", o.drive_age, self._data),
-            ("heartbeat", o.drive_heartbeat_age, self._heartbeat),
-        )
-        for what, age, most in named:
-            if age > most:
-                said = f"no {what} of the drive for {1e3 * age:.1f} ms"
-                return Fault(14, said, f"{1e3 * most:g} ms", Reaction.ZERO)
+        if o.drive_age > self._data:
+            return self._fault("data", o.drive_age, self._data)
+        if o.drive_heartbeat_age > self._heartbeat:
+            return self._fault("heartbeat", o.drive_heartbeat_age, self._heartbeat)
         return None
+
+    def _fault(self, what: str, age: float, most: float) -> Fault:
+        said = f"no {what} of the drive for {1e3 * age:.1f} ms"
+        return Fault(14, said, f"{1e3 * most:g} ms", Reaction.ZERO)
 
 
 class _NotFollowed:

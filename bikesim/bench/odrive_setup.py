@@ -1,5 +1,6 @@
 """Sets an ODrive up over CANSimple, and proves its watchdog. It is idle before and after."""
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -26,13 +27,14 @@ _PATIENCE = 1.0  # s
 _PERIOD = 0.005  # s, between two torque commands
 _LISTEN = 0.3  # s, to count cyclic messages
 _HOLD = 0.05  # s, beyond a heartbeat's period, enabled before the silence
-_LATE = 0.02  # s, beyond the time-out
+_LATE = 0.02  # s, beyond the time-out, that it may take
 
 
 class ODriveReport(NamedTuple):
     """What was found: how long after the last torque command it was disarmed [s], at most.
 
-    The ODrive tells with its heartbeat, so up to one of its periods later than it was.
+    The ODrive tells with its heartbeat, so up to one of its periods later than it was; but it is
+    disarmed before the heartbeat that comes 20 ms after the time-out.
     """
 
     disarmed_after: float
@@ -49,6 +51,7 @@ def set_up(link: Link, drive: ODriveSettings) -> ODriveReport:
 class _SetUp:
     def __init__(self, link: Link, drive: ODriveSettings) -> None:
         self._link, self._drive, self._node = link, drive, drive.node
+        self._heard = 0.0  # s, its newest heartbeat
 
     def run(self) -> ODriveReport:
         self._send(set_input_torque(self._node, 0.0))
@@ -92,26 +95,41 @@ class _SetUp:
         self._expect(_is_enabled, "does not go into closed-loop control", feed=True)
         self._hold()
         last = self._link.now()
-        allowed = self._drive.watchdog_timeout + self._drive.heartbeat_period + _LATE
-        disarmed = self._heartbeat(lambda said: not _is_enabled(said), last + allowed)
+        # To the heartbeat that `_hold` aimed at, should it come late, but not to the one after it.
+        to_be_told = self._allowed + 0.5 * self._drive.heartbeat_period
+        disarmed = self._heartbeat(lambda said: not _is_enabled(said), last + to_be_told)
         if disarmed is None:
             raise self._error(
-                f"is still enabled {allowed:.3f} s after the last torque command: set "
+                f"is still enabled {self._allowed:.3f} s after the last torque command: set "
                 f"enable_watchdog and watchdog_timeout = {self._drive.watchdog_timeout:g} in it"
             )
         if not disarmed.errors & AxisError.WATCHDOG_TIMER_EXPIRED:
             raise self._error(f"disarmed, but not by its watchdog: {errors_told(disarmed.errors)}")
         return self._link.now() - last
 
+    @property
+    def _allowed(self) -> float:
+        """In which its watchdog must have run out [s]."""
+        return self._drive.watchdog_timeout + _LATE
+
     def _hold(self) -> None:
-        """Fed, it must stay enabled."""
-        end = self._link.now() + self._drive.heartbeat_period + _HOLD
-        while self._link.now() < end:
+        """Fed, it must stay enabled.
+
+        Ends so long before a heartbeat that this one must say that it is disarmed: heartbeats far
+        apart would else hide how late it was.
+        """
+        period = self._drive.heartbeat_period
+        self._feed_until(self._link.now() + period + _HOLD)
+        beats = math.ceil((self._link.now() + self._allowed - self._heard) / period)
+        self._feed_until(self._heard + beats * period - self._allowed)
+        self._send(set_input_torque(self._node, 0.0))
+
+    def _feed_until(self, end: float) -> None:
+        while (now := self._link.now()) < end:
             self._send(set_input_torque(self._node, 0.0))
-            fed = self._heartbeat(lambda said: not _is_enabled(said), self._link.now() + _PERIOD)
+            fed = self._heartbeat(lambda said: not _is_enabled(said), min(now + _PERIOD, end))
             if fed is not None:
                 raise self._error(f"disarmed while it was fed: {errors_told(fed.errors)}")
-        self._send(set_input_torque(self._node, 0.0))
 
     def _expect(
         self, is_so: Callable[[AxisHeartbeat], bool], otherwise: str, feed: bool = False
@@ -137,7 +155,10 @@ class _SetUp:
             if frame.id != message_id(self._node, Command.HEARTBEAT):
                 continue
             said = unpack_heartbeat(frame.data)
-            if said is not None and wanted(said):
+            if said is None:
+                continue
+            self._heard = self._link.now()
+            if wanted(said):
                 return said
         return None
 

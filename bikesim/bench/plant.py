@@ -82,6 +82,7 @@ class Plant:
         )
         self.bar.show(self._rest)
         self._ratio = bench.drive.gear * bench.drive.direction
+        self._drive_zero = bench.bar.drive_zero
         self.drive = _emulated_drive(bench)
         self.node = EmulatedSteerNode()
         self.wheel = None if bench.wheel is None else EmulatedWheelNode(bench.wheel)
@@ -128,7 +129,8 @@ class Plant:
     def _follow(self) -> None:
         _, _, steer, rate = self.bar.telemetry()
         self.node.steer, self.node.steer_rate = steer, rate
-        self.drive.angle, self.drive.rate = steer * self._ratio, rate * self._ratio
+        self.drive.angle = (steer + self._drive_zero) * self._ratio
+        self.drive.rate = rate * self._ratio
 
 
 def _emulated_drive(bench: BenchSettings) -> EmulatedDrive | EmulatedODrive:

@@ -18,7 +18,8 @@ from bikesim.record.writer import RunWriter
 if TYPE_CHECKING:
     import can
 
-_PAUSE = 0.01  # s, between two looks at what there is to write
+_TICKS = 10  # between two looks at what there is to write
+_PAUSE = 0.05  # s, at most; where there are no ticks
 _AT_ONCE = 50  # rows or frames, before the tick's thread is let in
 _ROW = 27
 
@@ -33,9 +34,10 @@ class ThreadedRecorder:
     def __init__(self, writer: RunWriter, frames: Path | None = None) -> None:
         self._writer, self._path = writer, frames
         self._rows: deque[tuple[Real, ...]] = deque()
-        self._frames: deque[can.Message] = deque()
+        self._frames: deque[tuple[can.Message, float | None]] = deque()
         self.trouble = ""
-        self._done = threading.Event()
+        self._done = False
+        self._wake = threading.Event()
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
 
     def __enter__(self) -> Self:
@@ -48,14 +50,18 @@ class ThreadedRecorder:
     def append(self, row: tuple[Real, ...]) -> None:
         """A tick's."""
         self._rows.append(row)
+        if len(self._rows) >= _TICKS and not self._wake.is_set():
+            # Now is the time: the loop has nothing to do until the next tick.
+            self._wake.set()
 
-    def log(self, message: "can.Message") -> None:
-        """A frame, sent or received."""
-        self._frames.append(message)
+    def log(self, message: "can.Message", sent: float | None = None) -> None:
+        """A frame, and when it was sent [s since 1970]; None: it was received."""
+        self._frames.append((message, sent))
 
     def stop(self) -> None:
         """Writes what is left. Once is enough."""
-        self._done.set()
+        self._done = True
+        self._wake.set()
         self._thread.join()
 
     def finish(self, ending: Ending) -> None:
@@ -89,20 +95,23 @@ class ThreadedRecorder:
 
     def _write_until_done(self, log) -> None:
         while True:
-            done = self._done.is_set()
+            done = self._done
             while self._write_some(log):
                 # Others may have waited for this interpreter.
                 time.sleep(0)
             if done:
                 return
-            self._done.wait(_PAUSE)
+            self._wake.wait(_PAUSE)
+            self._wake.clear()
 
     def _write_some(self, log) -> bool:
         rows, frames = self._rows, self._frames
         for _ in range(min(_AT_ONCE, len(rows))):
             self._writer.append(rows.popleft())
         for _ in range(min(_AT_ONCE, len(frames))):
-            message = frames.popleft()
+            message, sent = frames.popleft()
+            if sent is not None:
+                message.timestamp, message.is_rx = sent, False
             if log is not None:
                 log.on_message_received(message)
         return len(rows) + len(frames) >= _AT_ONCE

@@ -26,9 +26,6 @@ BENCH_CHANNELS = (
     Channel("skipped", "1", "in all", "ticks left out because they were past, up to now"),
 )
 
-# A wait for frames ends this long before the deadline [s]; the rest is slept, which is more exact.
-_MARGIN = 200e-6
-
 # A tick takes no more; a bus that is flooded must not hold it up.
 _MOST_FRAMES = 64
 
@@ -45,6 +42,11 @@ class Port(Protocol):
     @property
     def trouble(self) -> str:
         """What is wrong with the bus; empty where nothing is."""
+        ...
+
+    @property
+    def wakes_late(self) -> float:
+        """By how much a wait for frames may be longer than it should [s]."""
         ...
 
     def send(self, frames: Iterable[Frame]) -> None: ...
@@ -95,18 +97,15 @@ class BenchRig:
         clock: Clock,
         late: float,
         others: Iterable[Traffic] = (),
-        host_ids: frozenset[int] | None = None,
     ) -> None:
-        """`others` take frames besides, each of its ids. Who sends one of `host_ids` (the drive's
-        own by default) is a second master; on a bus that echoes there must be none.
-        """
+        """`others` take frames besides, each of its ids."""
         self.info = info
         self._port, self._bar, self._drive, self._clock = port, bar, drive, clock
         self._takers: dict[int, tuple[Callable[[Frame, float], None], ...]] = {}
         for part in (bar, drive, *others):
             for identifier in part.ids:
                 self._takers[identifier] = (*self._takers.get(identifier, ()), part.receive)
-        self._host_ids = drive.host_ids if host_ids is None else host_ids
+        self._host_ids = drive.host_ids
         self.hooks = Hooks()
         self.disabled: bool | None = None
         """Once closed: whether the drive said that it is disabled; None: it said nothing."""
@@ -193,7 +192,9 @@ class BenchRig:
     def wait(self) -> None:
         """To the deadline, taking what comes."""
         self._port.send(self._drive.upkeep(self._clock.now, on_time=self._on_time))
-        while (left := self._clock.left - _MARGIN) > 0:
+        # The rest is slept, which is more exact.
+        margin = self._port.wakes_late
+        while (left := self._clock.left - margin) > 0:
             if not self._take(left):
                 break
         late, skipped = self._clock.wait()

@@ -41,6 +41,7 @@ class SimulatedBench:
     def __init__(self, plant: Emulated, period: float) -> None:
         self.plant, self._period = plant, period
         self.trouble = ""
+        self.wakes_late = 200e-6
         self.closed = False
         self.tamper: Tampering | None = None
         """On the way from the devices."""

@@ -12,6 +12,8 @@ from bikesim.bench.emulated.device import Device
 from bikesim.bench.emulated.pump import Pump, PumpThread
 from bikesim.bench.odrive_settings import ODriveSettings
 
+from .lockstep import DRIVES, LockStep, leaning, profile
+
 
 class Wire:
     """A virtual bus with a name of its own."""
@@ -65,3 +67,9 @@ def odrive() -> ODriveSettings:
     return ODriveSettings(
         node=3, torque_constant=0.055, gear=4.0, torque_limit=3.0, heartbeat_period=0.01
     )
+
+
+@pytest.fixture(params=DRIVES)
+def bench(request: pytest.FixtureRequest) -> LockStep:
+    """In lock-step, with each kind of drive."""
+    return LockStep(profile(DRIVES[request.param], thresholds={"ramp_in": 0.05}), leaning())

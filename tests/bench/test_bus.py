@@ -1,7 +1,20 @@
+import os
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import can
 import pytest
 
-from bikesim.bench.bus import BusPort, BusSettings, bus_load, filter_for, open_bus, worst_bits
+from bikesim.bench.bus import (
+    BusPort,
+    BusSettings,
+    bus_load,
+    close_bus,
+    filter_for,
+    open_bus,
+    worst_bits,
+)
 from bikesim.bench.frame import Frame, to_message
 from bikesim.bench.preflight import checked_load
 from bikesim.bench.ride import make_drive
@@ -61,15 +74,15 @@ class TestPort:
             assert port.trouble == ""
 
     def test_both_ways_are_logged(self, wire: Wire):
-        log: list[can.Message] = []
+        log: list[tuple[int, float | None]] = []
         with wire.host() as ours, wire.host() as theirs:
-            port = BusPort(ours, {0x110}, log.append)
+            port = BusPort(ours, {0x110}, lambda one, sent: log.append((one.arbitration_id, sent)))
             theirs.send(to_message(Frame(0x110, b"\1")))
             port.receive(0.1)
             port.send([Frame(0x205, b"\2")])
             assert theirs.recv(0.1) is not None
-        assert [(one.arbitration_id, one.is_rx) for one in log] == [(0x110, True), (0x205, False)]
-        assert log[1].timestamp == pytest.approx(log[0].timestamp, abs=1.0)
+        assert log[0] == (0x110, None)
+        assert log[1] == (0x205, pytest.approx(time.time(), abs=1.0))
 
     def test_what_was_before_is_forgotten(self, wire: Wire):
         with wire.host() as ours, wire.host() as theirs:
@@ -95,6 +108,58 @@ class TestPort:
             port.trouble = ""
             port.send([Frame(0x205)])
             assert port.trouble.startswith("cannot send")
+
+
+class TestEcho:
+    """A bus that gives back what one sends; a second master on it all the same is seen."""
+
+    COMMAND = Frame(0x205, bytes(5))
+
+    @contextmanager
+    def buses(self) -> Iterator[tuple[can.BusABC, can.BusABC]]:
+        settings = BusSettings(
+            interface="udp_multicast",
+            channel="239.74.163.9",
+            arguments={"port": 20_000 + os.getpid() % 20_000},
+        )
+        ours, theirs = open_bus(settings), open_bus(settings)
+        try:
+            yield ours, theirs
+        finally:
+            close_bus(ours)
+            close_bus(theirs)
+
+    def test_ones_own_frames_are_passed_over(self):
+        with self.buses() as (ours, theirs):
+            port = BusPort(ours, {0x110, 0x205}, echoed={0x205})
+            for _ in range(300):
+                port.send([self.COMMAND])
+                theirs.send(to_message(Frame(0x110)))
+                assert port.receive(0.5) == Frame(0x110)
+            assert port.receive(0.0) is None
+
+    @pytest.mark.parametrize("identifier", [0x205, 0x080])
+    def test_one_frame_of_another_is_not(self, identifier: int):
+        with self.buses() as (ours, theirs):
+            port = BusPort(ours, {0x205, 0x080}, echoed={0x205, 0x080})
+            for _ in range(50):
+                port.send([self.COMMAND])
+                assert port.receive(0.0) is None
+            theirs.send(to_message(Frame(identifier, b"\1")))
+            assert port.receive(0.5) == Frame(identifier, b"\1")
+            assert port.receive(0.0) is None
+
+    def test_what_was_sent_before_it_is_forgotten_does_not_count(self):
+        """Of the set-up, on the same bus: it is flushed before the ride."""
+        with self.buses() as (ours, theirs):
+            for _ in range(10):
+                ours.send(to_message(self.COMMAND))
+            port = BusPort(ours, {0x205}, echoed={0x205})
+            port.flush()
+            port.send([self.COMMAND])
+            assert port.receive(0.05) is None
+            theirs.send(to_message(self.COMMAND))
+            assert port.receive(0.5) == self.COMMAND
 
 
 def test_filters_can_be_taken_away_again(wire: Wire):

@@ -9,53 +9,71 @@ from bikesim.bench.calibrate import Held, Swings, calibrated, encoder_zero
 from bikesim.bench.calibrate_bench import NodeCalibrator
 from bikesim.bench.calibration import NodeCalibration
 from bikesim.bench.emulated.link import SimulatedLink
-from bikesim.bench.emulated.steer_node import USUAL_CALIBRATION, EmulatedSteerNode
-from bikesim.bench.frame import Frame
+from bikesim.bench.emulated.steer_node import USUAL_CALIBRATION
+from bikesim.bench.link import until
+from bikesim.bench.sensor_node import SteerDecoder, SteerReading
 from bikesim.errors import InputError
 
-SENSORS = NodeCalibration(0.47, 5.2, 0.512, 9.6, 3.3)
-POSITIONS = [math.radians(one) for one in (-30, 0, 30)]
-
-
-class HandledBar(EmulatedSteerNode):
-    """Its bar is where the person holds it, or is swung to and fro by 25 deg."""
-
-    swinging = False
-
-    def advance(self, time: float) -> list[Frame]:
-        if self.swinging:
-            self.steer = math.radians(25) * math.sin(4 * time)
-            self.steer_rate = 4 * math.radians(25) * math.cos(4 * time)
-        return super().advance(time)
-
-
-class Person:
-    """Does what is asked, `off` [deg] beside it; answers a position with what he reads."""
-
-    def __init__(self, node: HandledBar, *, off: dict[str, float] | None = None) -> None:
-        self._node, self._off = node, off or {}
-        self.says: dict[str, str] = {}
-        self.asked: list[str] = []
-
-    def __call__(self, question: str) -> str:
-        self.asked.append(question)
-        if "swing" in question:
-            self._node.swinging = True
-            return ""
-        where = question.removeprefix("turn the bar to ").partition(" deg")[0]
-        self._node.steer = math.radians(float(where) + self._off.get(where, 0.0))
-        return self.says.get(where, "")
+from .handled import POSITIONS, SENSORS, HandledBar, Person
 
 
 def bench(
     sensors: NodeCalibration = SENSORS,
     stored: NodeCalibration | None = USUAL_CALIBRATION,
     off: dict[str, float] | None = None,
+    noise: float = 0.0,
 ) -> tuple[HandledBar, Person, NodeCalibrator]:
-    node = HandledBar(sensors=sensors, stored=stored)
-    node.estop_closed = False
+    node = HandledBar(sensors, stored, noise)
     person = Person(node, off=off)
     return node, person, NodeCalibrator(SimulatedLink([node]), person, hold=0.2, swing=4.0)
+
+
+def measured(
+    node: HandledBar, calibrator: NodeCalibrator, steer: float, rate: float
+) -> tuple[float, float]:
+    """What the node says on average of a bar that is held there, or turns through there."""
+    node.swinging, node.steer, node.steer_rate = False, steer, rate
+    link, decoder, said = calibrator._link, SteerDecoder(), []
+    for frame in until(link, link.now() + 0.5):
+        reading = decoder.decode(frame.data, link.now()) if frame.id == decoder.id else None
+        if isinstance(reading, SteerReading):
+            said.append((reading.steer, reading.steer_rate))
+    assert len(said) > 400
+    return tuple(np.mean(said[20:], axis=0).tolist())
+
+
+@pytest.mark.parametrize("noise", [0.0, 2e-4, 7e-4])
+@pytest.mark.parametrize(
+    "sensors",
+    [
+        SENSORS,
+        NodeCalibration(0.62, 8.1, 0.44, 17.0, 3.3),
+        NodeCalibration(0.35, -4.1, 0.55, 7.0, 3.3),
+        NodeCalibration(0.5, 6.0, 0.5, -12.0, 3.3),
+    ],
+    ids=["a little off", "coarser", "pot mirrored", "gyro mirrored"],
+)
+def test_afterwards_the_node_measures_the_bar(sensors: NodeCalibration, noise: float):
+    """Against the bar's own angle and rate; 7e-4 of a potentiometer's range is 4 mrad."""
+    node, _, calibrator = bench(sensors, noise=noise)
+    before = measured(node, calibrator, 0.3, 0.0)[0]
+    assert abs(before - 0.3) > 0.01
+    mirrored = min(sensors.angle_scale, sensors.rate_scale) < 0
+    calibrator.store(calibrator.measure(POSITIONS, anew=mirrored).calibration)
+    for steer in (-0.6, -0.2, 0.0, 0.35, 0.6):
+        angle, rate = measured(node, calibrator, steer, 3 * steer)
+        assert angle == pytest.approx(steer, abs=1e-3 + noise)
+        assert rate == pytest.approx(3 * steer, rel=5e-3, abs=2e-3 + 5 * noise)
+
+
+def test_a_person_who_is_half_a_degree_beside_each_position():
+    """As far as he may be; the angle is then as wrong as he was, and no more."""
+    node, _, calibrator = bench(off={"-30": 0.5, "+0": -0.4, "+30": 0.5})
+    calibrator.store(calibrator.measure(POSITIONS).calibration)
+    for steer in (-0.5, 0.0, 0.5):
+        assert measured(node, calibrator, steer, 0.0)[0] == pytest.approx(
+            steer, abs=math.radians(0.6)
+        )
 
 
 @pytest.mark.parametrize("stored", [USUAL_CALIBRATION, None], ids=["calibrated", "new"])

@@ -59,6 +59,33 @@ def test_frames_that_come_late_are_good():
     assert lost(told) == [0] * 6
 
 
+@pytest.mark.parametrize("period", [1e-3, 1e-2], ids=["node", "wheel"])
+@pytest.mark.parametrize("stall", [0.02, 0.2, 0.34, 0.5, 0.7, 0.9, 1.3])
+@pytest.mark.parametrize("room", [1, 10, 40, 200])
+def test_a_buffer_that_was_full(period: float, stall: float, room: int):
+    """The host does not read for a while; of what came meanwhile its buffer kept the oldest."""
+    begin, end = round(1.0 / period), round((1.0 + stall) / period)
+    kept = range(begin, min(begin + room, end))
+    numbers = [*range(begin), *kept, *range(end, end + 700)]
+    came = [n * period if n not in kept else end * period for n in numbers]
+    continuity = Continuity(period)
+    told = [
+        continuity.follow(n % 15, round(n * period * 1e5) % 65536, arrival)
+        for n, arrival in zip(numbers, came, strict=True)
+    ]
+    assert [one for one in told if isinstance(one, Flaw)] == []
+    assert lost(told)[begin + len(kept)] == end - begin - len(kept)
+    assert sum(lost(told)) == end - begin - len(kept)
+    assert isinstance(told[-1], Passage)
+    assert told[-1].time == pytest.approx(numbers[-1] * period)
+
+
+def test_a_clock_that_jumps_back_is_a_flaw_once():
+    sent = [(n % 15, (n if n < 50 else n - 20) * 1e-3) for n in range(100)]
+    told = follow(sent, [n * 1e-3 for n in range(100)])
+    assert [i for i, one in enumerate(told) if isinstance(one, Flaw)] == [50]
+
+
 @pytest.mark.parametrize("counter", range(15))
 @pytest.mark.parametrize("ticks", [0, 1, 100, 65535])
 def test_before_the_first_frame_none_is_missing(counter: int, ticks: int):

@@ -66,6 +66,23 @@ def test_without_its_watchdog_it_is_refused(odrive: ODriveSettings, timeout: flo
     assert "watchdog_timeout = 0.03" in told
 
 
+@pytest.mark.parametrize("heartbeat_period", [0.01, 0.02, 0.1])
+@pytest.mark.parametrize("timeout", [0.06, 0.1, 0.14])
+@pytest.mark.parametrize("began", range(0, 100, 13))
+def test_a_slow_watchdog_is_not_hidden_by_slow_heartbeats(
+    odrive: ODriveSettings, heartbeat_period: float, timeout: float, began: int
+):
+    """Whatever the phase of the heartbeats; of 30 ms, 20 ms more are allowed."""
+    drive = odrive.model_copy(update={"heartbeat_period": heartbeat_period})
+    late = SimulatedLink([emulated(drive, watchdog_timeout=timeout)])
+    late.receive(0.001 * began)
+    with pytest.raises(InputError, match=r"still enabled 0\.050 s after"):
+        set_up(late, drive)
+    good = SimulatedLink([emulated(drive)])
+    good.receive(0.001 * began)
+    assert set_up(good, drive).disarmed_after <= 0.05 + 0.5 * heartbeat_period
+
+
 @pytest.mark.parametrize(
     ("changes", "told"),
     [

@@ -2,13 +2,15 @@
 
 import shutil
 import subprocess
-from collections.abc import Callable
 from ctypes import CDLL
 from pathlib import Path
 
+import cantools
 import pytest
+from cantools.database.can import Database
 
 from .binding import Firmware
+from .nodes import PowerUp, block
 
 
 @pytest.fixture(scope="session")
@@ -26,6 +28,20 @@ def library(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def power_up(library: Path) -> Callable[..., Firmware]:
+def power_up(library: Path) -> PowerUp:
     """Starts a node with what its memory has; the memory of a new one is erased."""
     return lambda memory=b"\xff" * 32: Firmware(CDLL(str(library)), memory)
+
+
+@pytest.fixture(scope="session")
+def database(repository: Path) -> Database:
+    """The project's, as cantools has it."""
+    found = cantools.database.load_file(repository / "hardware" / "can" / "steer_node.dbc")
+    assert isinstance(found, Database)
+    return found
+
+
+@pytest.fixture
+def node(power_up: PowerUp) -> Firmware:
+    """A calibrated one."""
+    return power_up(block())

@@ -45,6 +45,7 @@ class Calibrate:
         return self._node(bench, positions)
 
     def _node(self, bench: "BenchSettings", positions: list[float]) -> int:
+        from bikesim.bench.bus import close_bus
         from bikesim.bench.calibrate_bench import NodeCalibrator, on_node_bus
 
         bus, link = on_node_bus(bench)
@@ -58,7 +59,7 @@ class Calibrate:
             kept = _keep(self.bench, old)
             calibrator.store(found.calibration)
         finally:
-            bus.shutdown()
+            close_bus(bus)
         print(f"stored in the node; as it was: {kept}")
         return 0
 

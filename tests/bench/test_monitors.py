@@ -1,0 +1,69 @@
+"""Watchers that are asked together find what each of them would."""
+
+import math
+
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from bikesim.bench.faults import Observation, Thresholds
+from bikesim.bench.monitors import AtOnce
+
+SOUND = Observation(
+    time=1.0, steer=0.1, steer_rate=0.0, fresh=True, sample_time=1.0, age=0.001,
+    bad_frames=0, frozen_frames=0, pot_ok=True, gyro_ok=True, vref_ok=True, estop_closed=True,
+    drive_age=0.001, drive_heartbeat_age=0.05, drive_trouble="", drive_error="",
+    torque_measured=0.0, torque_sent=0.0, late=0.0, bus_trouble="", second_master=False,
+)  # fmt: skip
+
+TIMES = st.one_of(st.floats(0, 0.2), st.sampled_from((0.003, 0.005, 0.01, 0.02, 0.15, math.inf)))
+COUNTS = st.integers(0, 5)
+WORDS = st.sampled_from(("", "", "wrong"))
+MOSTLY = st.sampled_from((True, True, True, False))
+OBSERVATIONS = st.builds(
+    SOUND._replace,
+    steer=st.one_of(st.floats(-2, 2), st.just(math.nan), st.just(math.radians(45.0))),
+    age=TIMES,
+    bad_frames=COUNTS,
+    frozen_frames=COUNTS,
+    pot_ok=MOSTLY,
+    gyro_ok=MOSTLY,
+    vref_ok=MOSTLY,
+    estop_closed=MOSTLY,
+    drive_age=TIMES,
+    drive_heartbeat_age=TIMES,
+    drive_trouble=WORDS,
+    drive_error=WORDS,
+    bus_trouble=WORDS,
+    second_master=st.booleans(),
+)
+
+
+@given(OBSERVATIONS)
+@example(SOUND)
+@example(SOUND._replace(age=math.nan))
+@example(SOUND._replace(drive_age=math.inf))
+@example(SOUND._replace(bad_frames=3))
+def test_asked_together_or_one_by_one(seen: Observation):
+    together = AtOnce(Thresholds(), heartbeat_period=0.1)
+    found = [fault for look in together.each if (fault := look(seen)) is not None]
+    gravest = max((fault.reaction for fault in found), default=None)
+    fault = together(seen)
+    assert (fault and fault.reaction) == gravest
+    assert fault is None or fault == next(one for one in found if one.reaction == gravest)
+
+
+def test_each_bound_is_looked_at():
+    """One by one out of bounds: nothing else says it."""
+    together = AtOnce(Thresholds(), heartbeat_period=0.1)
+    assert together(SOUND) is None
+    rows = {
+        21: {"estop_closed": False}, 20: {"bus_trouble": "x"}, 24: {"second_master": True},
+        17: {"drive_error": "x"}, 15: {"drive_trouble": "x"}, 14: {"drive_age": 0.006},
+        1: {"age": 0.004}, 2: {"bad_frames": 3}, 3: {"frozen_frames": 3}, 4: {"pot_ok": False},
+        8: {"steer": -0.8},
+    }  # fmt: skip
+    for row, changed in rows.items():
+        fault = together(SOUND._replace(**changed))
+        assert fault is not None
+        assert fault.row == row
+    assert len(rows) == len(together.each)
