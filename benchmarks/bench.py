@@ -194,10 +194,17 @@ def _kill(name: str, folder: Path) -> None:
             killed = _killed(emulator, host)
             if killed is None:
                 continue
-            last = max((now for now, torque in torques if torque), default=killed)
-            took.append(1e3 * (last - killed))
-    told = ", ".join(f"{one:.0f}" for one in took) or "never ridden"
-    print(f"  {name}: torque after kill -9 of the host until {told} ms (50)")
+            took.append(_outlasted(torques, killed))
+    told = ", ".join(took) or "never ridden"
+    print(f"  {name}: torque after kill -9 of the host until {told} (50 ms)")
+
+
+def _outlasted(torques: Sequence[tuple[float, float]], killed: float) -> str:
+    """How long there was torque after the kill; without one at it there is nothing to measure."""
+    before = [torque for now, torque in torques if now <= killed]
+    if not before or not before[-1]:
+        return "(no torque when it was killed: not measured)"
+    return f"{1e3 * (max(now for now, torque in torques if torque) - killed):.0f} ms"
 
 
 def _killed(emulator: Emulator, host: subprocess.Popen[bytes]) -> float | None:

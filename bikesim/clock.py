@@ -20,7 +20,7 @@ class SimulatedClock:
 
 
 class Wake(NamedTuple):
-    """How a wait ended: `late` [s] after the deadline, and whole periods `skipped` on the way."""
+    """How a wait ended: `late` [s] after the deadline that it served, `skipped` those before it."""
 
     late: float
     skipped: int
@@ -59,12 +59,13 @@ class RealTimeClock:
         return (self._ticks + 1) * self._period - self.now
 
     def wait(self) -> Wake:
-        """Sleeps to the next deadline that is not yet past."""
-        skipped = 0
-        if self.left < 0:
-            skipped = int(-self.left / self._period)
-            self._ticks += skipped
+        """Sleeps to the next deadline; serves the newest one that is past by then.
+
+        However it came to be late, by a long tick or by a sleep that was too long.
+        """
         while (left := self.left) > 1e-9:  # [s]; what is less is rounding
             self._sleep(left)
-        self._ticks += 1
-        return Wake(self.now - self._ticks * self._period, skipped)
+        past = max(-left, 0.0)
+        skipped = int(past / self._period)
+        self._ticks += 1 + skipped
+        return Wake(past - skipped * self._period, skipped)

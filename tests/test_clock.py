@@ -75,6 +75,15 @@ def test_deadlines_that_are_past_are_skipped_and_not_run_through():
     assert clock.now == pytest.approx(0.05)
 
 
+def test_a_sleep_that_is_much_too_long_is_one_late_tick_and_no_burst():
+    world = World(oversleep=0.0357)
+    clock = real(world)
+    assert clock.wait() == (pytest.approx(0.0057), 3)
+    world._oversleep = 0.0
+    assert clock.wait() == (pytest.approx(0.0, abs=1e-9), 0)
+    assert clock.now == pytest.approx(0.05)
+
+
 def test_start_sets_time_to_zero():
     world = World()
     clock = real(world)

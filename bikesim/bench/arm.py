@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from bikesim.bench.bus_errors import received
 from bikesim.bench.drive import Drive
 from bikesim.bench.faults import Fault, Observation, Reaction, Thresholds
 from bikesim.bench.frame import from_message
@@ -18,21 +19,18 @@ if TYPE_CHECKING:
 LISTEN = 0.25
 """So long the bus is listened to before anything is sent [s]."""
 
-REST_TORQUE = 0.1
-"""What a drive may measure at rest [N m]: noise of its current sensors."""
-
 _PATIENCE, _REST = 2.0, 0.2  # s
 
 
 def listen(bus: "can.BusABC", drive: Drive, bar: Bar, others: Iterable[Traffic] = ()) -> None:
-    """Hears who is there, sending nothing. Raises InputError: nobody, or another host."""
+    """Hears who is there, sending nothing. Raises InputError: nobody, another host, no bus."""
     import time
 
     heard: set[int] = set()
     errors = False
     end = time.monotonic() + LISTEN
     while (left := end - time.monotonic()) > 0:
-        message = bus.recv(left)
+        message = received(bus, left)
         if message is None:
             break
         errors |= message.is_error_frame
@@ -90,10 +88,10 @@ class _Arming:
             raise InputError(f"fault 20: {o.bus_trouble}")
         if not o.estop_closed:
             raise InputError("fault 21: the emergency stop is open: close it first")
-        if abs(o.torque_measured) > REST_TORQUE:
+        if not abs(o.torque_measured) <= self._thresholds.rest_torque:
             raise InputError(
                 f"fault 25: the drive measures {o.torque_measured:+.2f} N m before it is told any; "
-                f"allowed {REST_TORQUE:g} N m"
+                f"allowed {self._thresholds.rest_torque:g} N m"
             )
         self._rig.command(0.0)
         self._rig.wait()

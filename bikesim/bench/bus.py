@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field
 
+from bikesim.bench.bus_errors import bus_fails, told
 from bikesim.bench.frame import Frame, from_message, to_message
 from bikesim.bench.link import can_filters
 from bikesim.errors import InputError, unknown
@@ -88,12 +89,13 @@ def close_bus(bus: "can.BusABC") -> None:
 
 
 def filter_for(bus: "can.BusABC", ids: Iterable[int] | None) -> None:
-    """Only frames with these ids are received from now on; None: all.
+    """Only frames with these ids are received from now on; None: all. Raises InputError.
 
     Not in the loop: where python-can filters itself, a `recv(0)` that meets a frame which is not
     wanted says that there is none, however many are behind it.
     """
-    bus.set_filters(None if ids is None else can_filters(ids))
+    with bus_fails():
+        bus.set_filters(None if ids is None else can_filters(ids))
 
 
 @contextmanager
@@ -113,8 +115,8 @@ def _quiet() -> Iterator[None]:
 class BusPort:
     """The loop's port: frames of `ids` are received, others passed over; see `Port`.
 
-    What is sent and received is handed to `log` too, if there is one; it must not keep the loop,
-    nor change the message. It belongs to one thread.
+    All that is sent and received, of others and error frames too, is handed to `log`, if there is
+    one; it must not keep the loop, nor change the message. It belongs to one thread.
     """
 
     def __init__(
@@ -139,8 +141,9 @@ class BusPort:
         self.wakes_late = _LATE if self._wait is None else _PROMPT
         self._error_of: tuple[type[Exception], ...] = (can.CanError, OSError)
         self.trouble = ""
+        self._deaf = False
 
-    def send(self, frames: Iterable[Frame]) -> None:
+    def send(self, frames: Iterable[Frame]) -> bool:
         """Until one cannot be sent; `trouble` says so."""
         for frame in frames:
             message = to_message(frame)
@@ -148,11 +151,12 @@ class BusPort:
                 self._bus.send(message)
             except self._error_of as error:
                 self.trouble = f"cannot send: {told(error)}"
-                return
+                return False
             if frame.id in self._own:
                 self._own[frame.id] += 1
             if self._log is not None:
                 self._log(message, time.time())
+        return True
 
     def receive(self, timeout: float) -> Frame | None:
         """The next frame; None if there is none within `timeout` [s], or the bus is in trouble."""
@@ -165,7 +169,7 @@ class BusPort:
         deadline = time.perf_counter() + timeout
         while wait(max(timeout, 0.0)):
             frame = self._receive(0.0)
-            if frame is not None or self.trouble:
+            if frame is not None or self._deaf:
                 return frame
             timeout = deadline - time.perf_counter()
         return None
@@ -195,17 +199,19 @@ class BusPort:
         try:
             return self._bus.recv(timeout)
         except self._error_of as error:
-            self.trouble = f"cannot receive: {told(error)}"
+            self.trouble, self._deaf = f"cannot receive: {told(error)}", True
             return None
 
     def _taken(self, message: "can.Message") -> Frame | None:
+        identifier = message.arbitration_id
+        if not message.is_error_frame and self._came_back(identifier):
+            return None
+        if self._log is not None:
+            self._log(message, None)
         if message.is_error_frame:
             self.trouble = "error frames: wiring, termination, or a wrong bit rate"
-        elif message.arbitration_id in self._ids and not self._came_back(message.arbitration_id):
-            if self._log is not None:
-                self._log(message, None)
-            return from_message(message)
-        return None
+            return None
+        return from_message(message) if identifier in self._ids else None
 
     def _came_back(self, identifier: int) -> bool:
         """Whether it is this port's own. One that the bus lost lets one of another pass for it."""
@@ -237,13 +243,6 @@ def _waiting(bus: "can.BusABC") -> Callable[[float], object] | None:
         return select.select(sources, (), (), timeout)[0]
 
     return wait
-
-
-def told(error: Exception) -> str:
-    """What an exception says, in one line."""
-    cause = error.__cause__ if isinstance(error.__cause__, OSError) else None
-    said = " ".join(str(error).split()) or type(error).__name__
-    return f"{said}: {cause.strerror}" if cause is not None and cause.strerror else said
 
 
 def bus_load(frames: Iterable[tuple[int, float]], bitrate: int) -> float:

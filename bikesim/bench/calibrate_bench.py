@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from bikesim.bench.bus import filter_for, open_bus
+from bikesim.bench.bus import close_bus, filter_for, open_bus
 from bikesim.bench.calibrate import Calibrated, Held, Swings, calibrated
 from bikesim.bench.calibration import CalibrationClient, NodeCalibration
 from bikesim.bench.continuity import BadFrame
@@ -30,7 +30,11 @@ _RAW = (0.02, 0.98)
 def on_node_bus(bench: BenchSettings):
     """The profile's bus, of which the sensor node alone is heard. The caller shuts it down."""
     bus = open_bus(bench.bus)
-    filter_for(bus, (message(STEER_STATE).frame_id, message(STEER_REPLY).frame_id))
+    try:
+        filter_for(bus, (message(STEER_STATE).frame_id, message(STEER_REPLY).frame_id))
+    except InputError:
+        close_bus(bus)
+        raise
     return bus, BusLink(bus)
 
 
@@ -119,9 +123,12 @@ class NodeCalibrator:
 
 
 def encoder_angle(bench: BenchSettings) -> float:
-    """What the drive's encoder says of the bar now [rad], the drive disabled. Raises InputError."""
+    """What the drive's encoder says of the bar now [rad]. Raises InputError.
+
+    A person holds the bar: the drive is not enabled, its watchdog not tried either.
+    """
     drive = make_drive(bench.drive)
-    with on_the_bus(bench, drive, lambda line: None) as bus:
+    with on_the_bus(bench, drive, lambda line: None, prove=False) as bus:
         port = loop_port(bus, bench, drive)
         parts = Parts(bench, drive, port, RealTimeClock(bench.period))
         try:

@@ -1,20 +1,20 @@
 """Who answers on a bench's bus, and how well."""
 
-import re
 import time
 from collections import defaultdict
 from collections.abc import Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from bikesim.bench.bus import close_bus, filter_for, open_bus
+from bikesim.bench.bus_errors import received
 from bikesim.bench.continuity import BadFrame, Flaw
 from bikesim.bench.database import STEER_STATE, WHEEL_SPEED, cycle_time, message
 from bikesim.bench.drive import Drive
 from bikesim.bench.drives import make_drive
 from bikesim.bench.frame import from_message
 from bikesim.bench.preflight import checked_load
-from bikesim.bench.profile import BenchSettings, bench_path
+from bikesim.bench.profile import BenchSettings
+from bikesim.bench.profile_file import change_profile, own_profile
 from bikesim.bench.ride import Parts, loop_port
 from bikesim.bench.sensor_node import SteerDecoder, SteerReading
 from bikesim.bench.wheel_node import WheelDecoder, WheelReading
@@ -79,7 +79,7 @@ class _Heard:
     def listen(self, bus: "can.BusABC") -> None:
         began = time.monotonic()
         while (left := began + _LISTEN - time.monotonic()) > 0:
-            came = bus.recv(left)
+            came = received(bus, left)
             if came is None:
                 return
             now = time.monotonic()
@@ -209,22 +209,16 @@ def _of_drive(
 
 
 def remember(name: str, bench: BenchSettings) -> str:
-    """Writes into the profile that it passed the pulse; says so, or what a person is to write."""
-    path, line = bench_path(name), f'commissioned = "{bench.commissioning}"'
+    """Writes into the profile that it passed the pulse; says so, or what a person is to write.
+
+    A profile that ships is not written to.
+    """
+    mark = f'commissioned = "{bench.commissioning}"'
+    if bench.commissioned == bench.commissioning:
+        return f"passed; as the profile says: {mark}"
     try:
-        if bench.commissioned != bench.commissioning:
-            path.write_text(with_line(path, line), encoding="utf-8")
-    except OSError:
-        return f"passed; write into the profile: {line}"
-    return f"passed; in {path}: {line}"
-
-
-def with_line(path: Path, line: str) -> str:
-    """The profile's text with its `commissioned` replaced, or put before the first key."""
-    text = path.read_text(encoding="utf-8")
-    changed, times = re.subn(r"^commissioned\s*=.*$", line, text, count=1, flags=re.MULTILINE)
-    if times:
-        return changed
-    first = re.search(r"^\s*[\w\[\"]", text, flags=re.MULTILINE)
-    at = first.start() if first else len(text)
-    return f"{text[:at]}{line}\n{text[at:]}"
+        path = own_profile(name)
+        kept = change_profile(path, {"commissioned": bench.commissioning})
+    except InputError as error:
+        return f"passed; write into a profile of your own: {mark} ({error})"
+    return f"passed; in {path}: {mark}; as it was: {kept}"

@@ -31,6 +31,25 @@ if TYPE_CHECKING:
     import can
 
 
+class _Answer:
+    """Of the drive to SYNC: each of its messages has an age of its own, as each may stop alone.
+
+    `seen` [s]: when it came last; `asked` [s]: when the oldest SYNC left that it has not answered.
+    """
+
+    __slots__ = ("asked", "seen")
+
+    def __init__(self) -> None:
+        self.seen, self.asked = -math.inf, math.inf
+
+    def ask(self, time: float) -> None:
+        if self.asked == math.inf:
+            self.asked = time
+
+    def take(self, time: float) -> None:
+        self.seen, self.asked = time, math.inf
+
+
 class Cia402Drive:
     """See `Drive`. A fault is reset only on the way to being enabled for the first time.
 
@@ -50,9 +69,8 @@ class Cia402Drive:
         self._state = State.UNKNOWN
         self._mode = 0  # until it says
         self._torque = self._steer = self._steer_rate = 0.0
-        self._seen = self._heard = -math.inf
-        self._asked = math.inf
-        """When the oldest SYNC was sent that it has not answered."""
+        self._heard = -math.inf
+        self._status, self._motion = _Answer(), _Answer()
         self._error = ""
         self._armed = False
         self._last_error = 0
@@ -78,16 +96,17 @@ class Cia402Drive:
     def host_ids(self) -> frozenset[int]:
         return frozenset(self._cob.to_drive(self._settings.host_node))
 
-    def set_up(self, bus: "can.BusABC") -> tuple[str, ...]:
+    def set_up(self, bus: "can.BusABC", *, prove: bool = True) -> tuple[str, ...]:
         from bikesim.bench.cia402_setup import set_up
         from bikesim.bench.cia402_watchdog import prove_watchdog
         from bikesim.bench.link import BusLink
 
         report = set_up(bus, self._settings)
-        silent = prove_watchdog(BusLink(bus), self._settings)
+        silent = prove_watchdog(BusLink(bus), self._settings) if prove else None
+        proven = f"disabled it {1e3 * silent:.0f} ms after the last heartbeat" if silent else ""
         return (
             f"{self.name}: {report.name or 'without a name'}, rated {report.rated_torque:g} N m",
-            f"its watchdog disabled it {1e3 * silent:.0f} ms after the last heartbeat",
+            f"its watchdog {proven or 'was not tried'}",
             *(f"it has no {what}" for what in report.missing),
         )
 
@@ -96,7 +115,7 @@ class Cia402Drive:
         if identifier == self._cob.status:
             self._take_status(data, time)
         elif identifier == self._cob.motion:
-            self._take_motion(data)
+            self._take_motion(data, time)
         elif identifier == self._cob.heartbeat:
             nmt = unpack_heartbeat(data)
             if nmt is not None:
@@ -123,8 +142,8 @@ class Cia402Drive:
         return Goal.RESET
 
     def upkeep(self, time: float, *, on_time: bool = True) -> list[Frame]:
-        if self._asked == math.inf:
-            self._asked = time
+        self._status.ask(time)
+        self._motion.ask(time)
         if not on_time or time < self._next_heartbeat:
             return [SYNC]
         self._next_heartbeat = time + self._heartbeat_pause
@@ -140,9 +159,10 @@ class Cia402Drive:
         return (*((size, 1 / period) for size in in_a_tick), (1, ours), (1, theirs))
 
     def view(self, time: float) -> DriveView:
+        status, motion = self._status, self._motion
         return DriveView(
-            time - self._seen,
-            max(time - self._asked, 0.0),
+            time - min(status.seen, motion.seen),
+            max(time - min(status.asked, motion.asked), 0.0),
             time - self._heard,
             self._state is State.OPERATION_ENABLED,
             self._trouble(),
@@ -161,18 +181,19 @@ class Cia402Drive:
         if status is None:
             self._error = f"{self.name} sends {len(data)} bytes where its status has 8"
             return
-        self._seen, self._asked = time, math.inf
+        self._status.take(time)
         self._state = state_of(status.statusword)
         if self._state is State.OPERATION_ENABLED and not self._armed:
             self._armed, self._error = True, ""
         self._torque = self._scale.torque(status.torque)
         self._steer = self._scale.steer(status.position)
 
-    def _take_motion(self, data: bytes) -> None:
+    def _take_motion(self, data: bytes, time: float) -> None:
         motion = unpack_motion(data)
         if motion is None:
             self._error = f"{self.name} sends {len(data)} bytes where its motion has 7"
             return
+        self._motion.take(time)
         self._mode, self._last_error = motion.mode, motion.error
         self._steer_rate = self._scale.steer_rate(motion.velocity)
         if motion.error and self._armed:

@@ -40,12 +40,33 @@ class Write:
 def set_up_writes(drive: Cia402Settings) -> tuple[Write, ...]:
     """All of them; the order matters."""
     return (
+        *_own_writes(drive),
+        *(Write(o.index, o.subindex, o.value, "from the profile") for o in drive.objects),
+    )
+
+
+_CHECKED = {(0x6076, 0): "rated torque", (0x608F, 1): "encoder", (0x608F, 2): "encoder"}
+
+
+def doubly_written(drive: Cia402Settings) -> str:
+    """What of `drive.objects` would undo the set-up or what it checked, in words; else empty."""
+    taken = {(one.index, one.subindex): one.why for one in _own_writes(drive)} | _CHECKED
+    for one in drive.objects:
+        if why := taken.get((one.index, one.subindex)):
+            return (
+                f"drive.objects: {one.index:04X}:{one.subindex:02X} ({why}) is the set-up's own, "
+                "by the profile's other keys; leave it out"
+            )
+    return ""
+
+
+def _own_writes(drive: Cia402Settings) -> tuple[Write, ...]:
+    return (
         *_standstill(),
         *_supervision(drive),
         *_limits(drive),
         Write(0x6060, 0, CYCLIC_SYNCHRONOUS_TORQUE, "mode of operation"),
         *_pdos(drive),
-        *(Write(o.index, o.subindex, o.value, "from the profile") for o in drive.objects),
     )
 
 

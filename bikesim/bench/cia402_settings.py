@@ -75,8 +75,14 @@ class Cia402Settings(Settings):
         default=0.01, description="Time between two heartbeats of the drive [s]."
     )
     objects: Annotated[tuple[DriveObject, ...], Strict(False)] = Field(
-        default=(), description="More objects that this drive needs; written and read back."
+        default=(),
+        description="More objects that this drive needs, none of the set-up's own; read back.",
     )
+
+    @property
+    def watchdog(self) -> float:
+        """The host silent for so long [s]: the drive disables itself."""
+        return self.heartbeat_timeout
 
     @property
     def scale(self) -> DriveScale:

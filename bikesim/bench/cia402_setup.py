@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from bikesim.bench.bus_errors import Unreadable, told
 from bikesim.bench.cia402 import (
     CYCLIC_SYNCHRONOUS_TORQUE,
     DISABLE_VOLTAGE,
@@ -51,19 +52,24 @@ def set_up(bus: "can.BusABC", drive: Cia402Settings) -> DriveReport:
     import can
     from canopen import SdoAbortedError, SdoCommunicationError
 
+    unreadable = Unreadable()
     try:
-        with _node(bus, drive) as node:
+        with _node(bus, drive, unreadable) as node:
             return _SetUp(node, drive).run()
     except SdoCommunicationError:
+        if unreadable.error is not None:
+            raise InputError(f"the bus fails: {told(unreadable.error)}") from None
         raise InputError(f"{_who(drive)}: does not answer") from None
     except SdoAbortedError as error:
         raise InputError(f"{_who(drive)}: {error}") from None
-    except can.CanError as error:
-        raise InputError(f"{_who(drive)}: the bus fails: {error}") from None
+    except (can.CanError, OSError) as error:
+        raise InputError(f"the bus fails: {told(error)}") from None
 
 
 @contextmanager
-def _node(bus: "can.BusABC", drive: Cia402Settings) -> "Iterator[canopen.RemoteNode]":
+def _node(
+    bus: "can.BusABC", drive: Cia402Settings, unreadable: Unreadable
+) -> "Iterator[canopen.RemoteNode]":
     """The drive on a network that reads `bus`, and leaves it open."""
     import can
     import canopen
@@ -71,7 +77,7 @@ def _node(bus: "can.BusABC", drive: Cia402Settings) -> "Iterator[canopen.RemoteN
     # Else what it says of a time-out goes to the screen beside our own one line.
     logging.getLogger("canopen").addHandler(logging.NullHandler())
     network = canopen.Network(bus)
-    network.notifier = can.Notifier(bus, network.listeners, timeout=0.02)
+    network.notifier = can.Notifier(bus, [*network.listeners, unreadable], timeout=0.02)
     try:
         node = network.add_node(drive.node, canopen.import_od(_eds(drive), drive.node))
         node.sdo.MAX_RETRIES = 2  # pyright: ignore[reportAttributeAccessIssue]

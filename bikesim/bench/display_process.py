@@ -2,11 +2,12 @@
 
 import queue
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
 from typing import Self
+
+from bikesim.child import child_command
 
 READY = "ready"
 """With this word begins what `bikesim bench display` prints when a ride can be seen."""
@@ -28,7 +29,7 @@ class DisplayProcess:
 
     def __enter__(self) -> Self:
         process = subprocess.Popen(
-            [sys.executable, "-m", "bikesim", "bench", "display", self._bench, "--once"],
+            child_command("bikesim", "bench", "display", self._bench, "--once"),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

@@ -12,8 +12,9 @@ if TYPE_CHECKING:
 class DriveView(NamedTuple):
     """How a drive is at a tick; at the steer axis, SI, right positive.
 
-    `age` [s] of its data, `silent` [s]: for how long it has not sent what it should have, which
-    after a host that was late itself is less; `heartbeat_age` [s]. `trouble` says why it is not
+    `age` [s] of `steer` and `steer_rate`, of the older where they come in two messages;
+    `silent` [s]: for how long it has owed one of its cyclic messages, the one that is missing
+    longest: since it was due, or asked for; `heartbeat_age` [s]. `trouble` says why it is not
     enabled in torque mode, `error` what it reported, both empty where all is well. `torque`, as it
     measures it [N m];
     `steer` [rad] from where its encoder has its zero, `steer_rate` [rad/s].
@@ -60,10 +61,11 @@ class Drive(Protocol):
         """Bytes of data and times a second of all its frames, at a loop `period` [s]."""
         ...
 
-    def set_up(self, bus: "can.BusABC") -> tuple[str, ...]:
+    def set_up(self, bus: "can.BusABC", *, prove: bool = True) -> tuple[str, ...]:
         """Checks it against its profile, sets it up and proves its watchdog; lines for a person.
 
-        It is disabled afterwards, and if this raises InputError.
+        It is disabled afterwards, and if this raises InputError. Without `prove` it is never
+        enabled, and may not be before it was proven.
         """
         ...
 

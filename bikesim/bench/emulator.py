@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from bikesim.bench.bus import close_bus, open_bus
+from bikesim.bench.bus_errors import bus_fails
 from bikesim.bench.database import STEER_COMMAND, message
 from bikesim.bench.display import ScreenReader, screen_name
 from bikesim.bench.drives import make_drive
@@ -23,11 +24,11 @@ from bikesim.realtime import PRIORITY, real_time
 if TYPE_CHECKING:
     import can
 
-QUANTUM = 0.0005
+QUANTUM = 0.001
 """Of the physics, and between two looks at what is due [s]."""
 
 _STALE = 0.1  # s, without a new picture the ride is over
-_MOST_FRAMES = 200  # between two quanta
+_MOST_LATE_FRAMES = 12  # between two quanta, of those that came before; some twice as many as come
 _MOST_BEHIND = 0.05  # s; more than that is left out
 
 
@@ -104,9 +105,15 @@ class Emulator:
             self.plant.show(None)
 
     def _listen(self, until: float) -> None:
-        """Takes what comes until then; when it is late, all the same what is there already."""
-        for _ in range(_MOST_FRAMES):
-            came = self._bus.recv(max(until - time.monotonic(), 0.0))
+        """Takes what comes until then; when it is late, all the same some that are there already.
+
+        Not all: while it takes them others come, and the sensors would fall silent.
+        """
+        late = 0
+        while late < _MOST_LATE_FRAMES:
+            left = until - time.monotonic()
+            late += left <= 0.0
+            came = self._bus.recv(max(left, 0.0))
             if came is None:
                 return
             frame = from_message(came) if came.arbitration_id in self._wanted else None
@@ -123,9 +130,10 @@ class Emulator:
 
 @contextlib.contextmanager
 def emulated_bus(bench: BenchSettings) -> "Iterator[can.BusABC]":
-    """The profile's bus as the devices have it. Raises InputError if there is none."""
+    """The profile's bus as the devices have it. Raises InputError if there is none, or it fails."""
     bus = open_bus(bench.bus)
     try:
-        yield bus
+        with bus_fails():
+            yield bus
     finally:
         close_bus(bus)

@@ -38,7 +38,8 @@ class Observation(NamedTuple):
     the node's clock; `age` of the newest. `drive_age`: how long the drive has owed its data.
     `bad_frames`, `frozen_frames`: in a row, up to now.
     `drive_trouble` and `bus_trouble` say what is wrong in words, or are empty; so is
-    `drive_error`, what the drive itself reported. `late`: this tick, after its deadline.
+    `drive_error`, what the drive itself reported. `late`: this tick, after the first deadline that
+    it was to meet, and `skipped` how many it left out.
     """
 
     time: float
@@ -62,6 +63,7 @@ class Observation(NamedTuple):
     late: float
     bus_trouble: str
     second_master: bool
+    skipped: int = 0
 
 
 _Positive = Annotated[float, Field(gt=0, le=1000)]
@@ -111,9 +113,20 @@ class Thresholds(Settings):
         default=0.5, description="Torque measured against commanded [N m]: zero."
     )
     follow_time: _Positive = Field(default=0.020, description="For so long [s].")
-    late: _Positive = Field(default=0.001, description="A tick this late is an overrun [s].")
+    late: _Positive = Field(
+        default=0.001, description="A tick this late is an overrun, and feeds no watchdog [s]."
+    )
     late_ticks: _Count = Field(default=20, description="Overruns in a row: ramp out.")
     late_most: _Positive = Field(default=0.020, description="A tick this late [s]: ramp out.")
+    skipped_share: Annotated[float, Field(gt=0, le=1)] = Field(
+        default=0.1, description="Of the ticks of a second, left out as they were past: ramp out."
+    )
+    rest_torque: Annotated[float, Field(gt=0, le=1)] = Field(
+        default=0.1, description="Measured before any is sent [N m], of noise: no enabling."
+    )
+    wheel_silent: _Positive = Field(
+        default=0.5, description="No good speed for so long [s]; held until then: ramp out."
+    )
     fall_roll_deg: _Positive = Field(default=40.0, description="The rider fell [deg]: ramp out.")
     ramp_in: _Positive = Field(default=1.0, description="From no torque to all of it [s].")
     ramp_out: _Positive = Field(default=0.1, description="From any torque to none [s].")

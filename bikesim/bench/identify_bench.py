@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 from bikesim.bench.drives import make_drive
 from bikesim.bench.guard import BenchGuard
 from bikesim.bench.identify import BarFigures
-from bikesim.bench.identify_excitation import Excitation, excite
+from bikesim.bench.identify_excitation import MOST_RATE, Excitation, excite
 from bikesim.bench.identify_model import BarRecord
 from bikesim.bench.profile import BenchSettings
+from bikesim.bench.pulse import GROSSLY, send_pulse
 from bikesim.bench.ride import Parts, Say, loop_port, on_the_bus
 from bikesim.bench.stopping import Stopping
 from bikesim.clock import RealTimeClock
@@ -50,8 +51,12 @@ def excite_bench(
 
 
 def excite_armed(parts: Parts, excitation: Excitation, added_inertia: float = 0.0) -> BarRecord:
-    """On parts that are armed, the guard in force; the rig is its owner's to close."""
+    """On parts that are armed, the guard in force; the rig is its owner's to close.
+
+    A pulse before shows that signs, units and gear are right; raises InputError where they are not.
+    """
     bench, rig = parts.bench, parts.rig
+    _prove(parts, excitation.torque, added_inertia)
     guard = BenchGuard(
         bench.limits,
         bench.thresholds,
@@ -62,6 +67,20 @@ def excite_armed(parts: Parts, excitation: Excitation, added_inertia: float = 0.
     rig.begin()
     with Stopping(guard.ask_to_stop).watching():
         return excite(rig, guard, excitation, _AT_REST, added_inertia=added_inertia)
+
+
+def _prove(parts: Parts, torque: float, added_inertia: float) -> None:
+    """What the bar is will be seen: only what is grossly wrong is looked for, with less torque."""
+    bench, bar = parts.bench, parts.bench.bar
+    send_pulse(
+        parts.rig,
+        bar.model_copy(update={"inertia": bar.inertia + added_inertia}),
+        bench.limits,
+        bench.thresholds.model_copy(update={"trip_rate": MOST_RATE}),
+        parts.drive.heartbeat_period,
+        torque=min(torque, bench.limits.torque),
+        allowed=GROSSLY,
+    )
 
 
 def proposed(figures: BarFigures) -> dict[str, float]:

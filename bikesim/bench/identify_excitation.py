@@ -33,7 +33,7 @@ class Excitation:
         """`inertia` [kg m²] as it is thought to be, for the centring's damping."""
         if not 0 < torque <= MOST_TORQUE:
             raise InputError(f"torque = {torque} N m: must be above 0 and at most {MOST_TORQUE:g}")
-        self.duration, self._most = duration, torque
+        self.duration, self.torque = duration, torque
         self._waves = tuple(
             (2 * math.pi * _BASE * line, -math.pi * i * (i - 1) / len(_LINES))
             for i, line in enumerate(_LINES, start=1)
@@ -49,7 +49,7 @@ class Excitation:
         sines = sum(math.sin(w * time + p) for w, p in self._waves)
         faded = max(0.0, min(1.0, time / _FADE, (self.duration - time) / _FADE))
         torque = self._amplitude * sines - self._stiffness * steer - self._damping * steer_rate
-        return faded * max(-self._most, min(self._most, torque))
+        return faded * max(-self.torque, min(self.torque, torque))
 
 
 class Bar(Protocol):

@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Protocol
 
+from bikesim.bench.bus_errors import bus_fails, received
 from bikesim.bench.frame import Frame, from_message, to_message
 
 if TYPE_CHECKING:
@@ -26,7 +27,10 @@ class Link(Protocol):
 
 
 class BusLink:
-    """A link on a python-can bus, in real time. The bus stays its owner's."""
+    """A link on a python-can bus, in real time. The bus stays its owner's.
+
+    Raises InputError where the bus fails.
+    """
 
     def __init__(self, bus: "can.BusABC") -> None:
         self._bus = bus
@@ -35,12 +39,13 @@ class BusLink:
         return time.monotonic()
 
     def send(self, frame: Frame) -> None:
-        self._bus.send(to_message(frame))
+        with bus_fails():
+            self._bus.send(to_message(frame))
 
     def receive(self, timeout: float) -> Frame | None:
         deadline = time.monotonic() + timeout
         while True:
-            message = self._bus.recv(max(deadline - time.monotonic(), 0.0))
+            message = received(self._bus, max(deadline - time.monotonic(), 0.0))
             if message is None:
                 return None
             frame = from_message(message)

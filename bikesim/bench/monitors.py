@@ -4,6 +4,7 @@ They keep nothing but what the fault is about, and are asked at every tick, faul
 """
 
 import math
+from collections import deque
 from collections.abc import Callable
 
 from bikesim.bench.faults import Fault, Observation, Reaction, Thresholds
@@ -35,6 +36,7 @@ def monitors(
         _OverSpeed(t.trip_rate, t.trip_rate_time),
         _NotFollowed(t.follow_error, t.follow_time),
         _Overrun(t.late, t.late_ticks, t.late_most),
+        _Skipping(t.skipped_share, period),
     )
 
 
@@ -141,7 +143,7 @@ class _OverSpeed:
         self._lasting = Lasting()
 
     def __call__(self, o: Observation) -> Fault | None:
-        fast = abs(o.steer_rate) > self._limit
+        fast = not abs(o.steer_rate) <= self._limit
         lasting = self._lasting(fast, o.time)
         if not fast or lasting < self._time - 1e-6:
             return None
@@ -176,7 +178,7 @@ class _NotFollowed:
 
     def __call__(self, o: Observation) -> Fault | None:
         error = o.torque_measured - o.torque_sent
-        apart = abs(error) > self._limit
+        apart = not abs(error) <= self._limit
         lasting = self._lasting(apart, o.time)
         if not apart or lasting < self._time - 1e-6:
             return None
@@ -185,7 +187,7 @@ class _NotFollowed:
 
 
 class _Overrun:
-    """Row 19."""
+    """Row 19: ticks that are late."""
 
     def __init__(self, late: float, ticks: int, most: float) -> None:
         self._late, self._ticks, self._most = late, ticks, most
@@ -200,3 +202,25 @@ class _Overrun:
             what = f"{self._in_a_row} ticks in a row more than {1e3 * self._late:g} ms late"
             return Fault(19, what, f"less than {self._ticks}", Reaction.RAMP)
         return None
+
+
+class _Skipping:
+    """Row 19: a loop that is always too slow. A tick that leaves some out is on time again."""
+
+    _OVER = 1.0  # s
+
+    def __init__(self, share: float, period: float) -> None:
+        self._share, self._all = share, self._OVER / period
+        self._seen: deque[tuple[float, int]] = deque()
+        self._sum = 0
+
+    def __call__(self, o: Observation) -> Fault | None:
+        if o.skipped:
+            self._seen.append((o.time, o.skipped))
+            self._sum += o.skipped
+        while self._seen and self._seen[0][0] <= o.time - self._OVER:
+            self._sum -= self._seen.popleft()[1]
+        if self._sum <= self._share * self._all:
+            return None
+        what = f"{100 * self._sum / self._all:.0f} % of the ticks of a second left out"
+        return Fault(19, what, f"{100 * self._share:g} %", Reaction.RAMP)

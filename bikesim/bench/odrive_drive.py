@@ -47,7 +47,7 @@ class ODrive:
         self._state, self._asked = int(AxisState.IDLE), False
         self._sent = 0.0
         self._torque = self._steer = self._steer_rate = 0.0
-        self._seen = self._heard = -math.inf
+        self._estimated = self._measured = self._heard = -math.inf
         self._error = ""
         self._armed = False
         self._errors = 0
@@ -72,16 +72,18 @@ class ODrive:
     def host_ids(self) -> frozenset[int]:
         return frozenset(ids_to_odrive(self._settings.node))
 
-    def set_up(self, bus: "can.BusABC") -> tuple[str, ...]:
+    def set_up(self, bus: "can.BusABC", *, prove: bool = True) -> tuple[str, ...]:
         from bikesim.bench.link import BusLink
 
-        return self.set_up_over(BusLink(bus))
+        return self.set_up_over(BusLink(bus), prove=prove)
 
-    def set_up_over(self, link: "Link") -> tuple[str, ...]:
+    def set_up_over(self, link: "Link", *, prove: bool = True) -> tuple[str, ...]:
         """As `set_up`, in the time of a link."""
         from bikesim.bench.odrive_setup import set_up
 
-        report = set_up(link, self._settings)
+        report = set_up(link, self._settings, prove=prove)
+        if not prove:
+            return (f"{self.name}: its watchdog was not tried",)
         within = f"within {1e3 * report.disarmed_after:.0f} ms of the last torque command"
         return (f"{self.name}: its watchdog disarmed it {within}",)
 
@@ -89,13 +91,14 @@ class ODrive:
         identifier, data = frame.id, frame.data
         if identifier == self._estimates_id:
             estimates = unpack_estimates(data)
-            if estimates is not None:
-                self._seen = time
+            if estimates is not None and self._are_finite("encoder", estimates):
+                self._estimated = time
                 self._steer = self._settings.steer(estimates.position)
                 self._steer_rate = self._settings.steer_rate(estimates.velocity)
         elif identifier == self._torques_id:
             torques = unpack_torques(data)
-            if torques is not None:
+            if torques is not None and self._are_finite("torque", torques):
+                self._measured = time
                 self._torque = self._settings.torque(torques.estimate)
         elif identifier == self._heartbeat_id:
             said = unpack_heartbeat(data)
@@ -146,8 +149,8 @@ class ODrive:
     def view(self, time: float) -> DriveView:
         enabled = self._state == AxisState.CLOSED_LOOP_CONTROL
         return DriveView(
-            time - self._seen,
-            time - self._seen,
+            time - self._estimated,
+            max(time - self._due(), 0.0),
             time - self._heard,
             enabled,
             "" if enabled else self._trouble(),
@@ -156,6 +159,19 @@ class ODrive:
             self._steer,
             self._steer_rate,
         )
+
+    def _due(self) -> float:
+        """When the one of its two messages that is missing longest should have come [s]."""
+        s = self._settings
+        return min(self._estimated + s.estimates_period, self._measured + s.torques_period)
+
+    def _are_finite(self, what: str, figures: tuple[float, float]) -> bool:
+        """Else it is an error of the drive; nothing is to be reckoned with such a figure."""
+        if math.isfinite(figures[0]) and math.isfinite(figures[1]):
+            return True
+        said = ", ".join(f"{one:g}" for one in figures)
+        self._error = f"{self.name} sends {what} estimates that are no finite numbers: {said}"
+        return False
 
     def _take_errors(self, errors: int) -> None:
         self._errors = errors

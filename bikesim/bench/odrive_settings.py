@@ -49,6 +49,11 @@ class ODriveSettings(Settings):
     )
 
     @property
+    def watchdog(self) -> float:
+        """The host silent for so long [s]: the drive disables itself."""
+        return self.watchdog_timeout
+
+    @property
     def motor_torque_limit(self) -> float:
         """At the motor's shaft [N m]."""
         return self.torque_limit / self.gear

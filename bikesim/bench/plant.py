@@ -80,7 +80,7 @@ class Plant:
             step=min(scenario.physics_step, quantum),
             random=np.random.default_rng(0),
         )
-        self.bar.show(self._rest)
+        self._rehearse()
         self._ratio = bench.drive.gear * bench.drive.direction
         self._drive_zero = bench.bar.drive_zero
         self.drive = _emulated_drive(bench)
@@ -116,6 +116,14 @@ class Plant:
             return
         self._hands.rest()
         self.bar.data.qpos[0] = self.bar.data.qvel[0] = 0.0
+        self.bar.show(self._rest)
+
+    def _rehearse(self) -> None:
+        """All that the first moment of a ride needs is made now: it must not take longer then."""
+        self._hands.riding = True
+        self.bar.show(self._rest)
+        self._hands.torque(0.0, 0.0, self._rest)
+        self._hands.rest()
         self.bar.show(self._rest)
 
     def advance(self) -> None:

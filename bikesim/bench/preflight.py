@@ -1,15 +1,19 @@
 """What is known of a ride on a bench before anything is sent: said, or refused."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bikesim.bench.bench_loop import bench_loop, cued_delay, cued_loops, not_judged
 from bikesim.bench.bus import bus_load
 from bikesim.bench.drive import Drive
 from bikesim.bench.profile import BenchSettings
 from bikesim.errors import InputError
 from bikesim.experiment.run import scenario_bicycle
 from bikesim.experiment.scenario import Scenario
+from bikesim.haptics import HapticsSettings, make_haptics
 from bikesim.model.bicycle import Bicycle
-from bikesim.model.coupling import CoupledBicycle, Coupling, virtual_coupling
+from bikesim.model.coupling import CoupledBicycle, Coupling
 from bikesim.model.haptic import HapticBicycle
 from bikesim.model.law import Law
 from bikesim.model.margins import ALLOWED_EXCESS, GRIPS, Margin, margin_at
@@ -26,7 +30,12 @@ _WHEEL_FRAMES = ((8, 100.0),)
 
 @dataclass(frozen=True)
 class Preflight:
-    """Bicycle, loop and margins of a ride; `load` of the bus at worst."""
+    """Bicycle, loop and margins of a ride; `load` of the bus at worst.
+
+    `margins` with the haptic cue in the loop, up to the first speed without; `delay` [s], that of
+    the cue included; `doubt`: why the margins do not tell about this ride, or empty; `cued`:
+    whether there is a cue.
+    """
 
     bench: BenchSettings
     bicycle: Bicycle
@@ -35,6 +44,9 @@ class Preflight:
     coupling: Coupling | None
     load: float
     margins: tuple[Margin, ...]
+    delay: float = 0.0
+    doubt: str = ""
+    cued: bool = False
 
     @property
     def haptic(self) -> HapticBicycle:
@@ -50,34 +62,55 @@ class Preflight:
 
 
 def preflight(bench: BenchSettings, scenario: Scenario, drive: Drive) -> Preflight:
-    """For a scenario as `bench_scenario` gives it. Raises InputError for a bus that is too slow."""
+    """For a scenario as `bench_scenario` gives it. Raises InputError for a bus that is too slow,
+    and a haptic cue that the period cannot carry.
+    """
     bicycle, law = scenario_bicycle(scenario), Law(scenario.law)
-    wanted = handlebar_inertia(bicycle, law)
-    coupling = virtual_coupling(
-        bench.bar.coupling,
-        inertia=bench.bar.inertia,
-        wanted=wanted,
-        delay=bench.bar.delay,
-        period=bench.period,
+    load, haptics = checked_load(bench, drive), scenario.haptics
+    make_haptics(haptics, bench.period)
+    loop = bench_loop(bench, bicycle, law)
+    return Preflight(
+        bench,
+        bicycle,
+        law,
+        handlebar_inertia(bicycle, law),
+        loop.coupling,
+        load,
+        _margins(bicycle, law, loop, haptics, _speeds(bench, scenario)),
+        cued_delay(loop, haptics),
+        not_judged(loop, haptics),
+        haptics != HapticsSettings(),
     )
-    loop = SampledLoop(
-        bench.bar.inertia,
-        period=bench.period,
-        delay=bench.bar.delay,
-        viscous_friction=bench.bar.viscous_friction,
-        coupling=coupling,
-    )
-    margins = tuple(margin_at(bicycle, law, one, loop, GRIPS) for one in _speeds(bench, scenario))
-    return Preflight(bench, bicycle, law, wanted, coupling, checked_load(bench, drive), margins)
+
+
+def _margins(
+    bicycle: Bicycle,
+    law: Law,
+    loop: SampledLoop,
+    haptics: HapticsSettings,
+    speeds: Sequence[float],
+) -> tuple[Margin, ...]:
+    """From the fastest on: one without margin is enough to know."""
+    found: list[Margin] = []
+    for speed in sorted(speeds, reverse=True):
+        for cued in cued_loops(loop, haptics):
+            found.append(margin_at(bicycle, law, speed, cued, GRIPS))
+            if not found[-1].is_there:
+                return tuple(found)
+    return tuple(found)
+
+
+_SPEED_STEP = 0.5  # m/s; a light bar with a coupling may lack margin in the middle only
 
 
 def _speeds(bench: BenchSettings, scenario: Scenario) -> list[float]:
-    """Those of the ride; with a sensor at the wheel, up to the fastest that is let in."""
+    """All of the ride; with a sensor at the wheel, from standing to the fastest let in [m/s]."""
+    profile = [speed for _, speed in scenario.speed_profile] or [scenario.speed]
+    low, high = min(profile), max(profile)
     if bench.wheel is not None:
-        top = bench.limits.speed
-        return [0.25 * top, 0.5 * top, top]
-    profile = [speed for _, speed in scenario.speed_profile]
-    return sorted({min(profile), max(profile)}) if profile else [scenario.speed]
+        low, high = 0.0, bench.limits.speed
+    steps = math.ceil((high - low) / _SPEED_STEP)
+    return [low + i * (high - low) / max(steps, 1) for i in range(steps + 1)]
 
 
 def checked_load(bench: BenchSettings, drive: Drive) -> float:
@@ -98,11 +131,23 @@ def checked_load(bench: BenchSettings, drive: Drive) -> float:
     return load
 
 
+_ALL_THE_SAME = "--without-margin, given twice, rides all the same"
+
+
 def check_margins(ready: Preflight, *, told: int) -> None:
-    """Raises InputError for a speed without margin, unless it was `told` twice to ride it."""
+    """Raises InputError for a speed without margin, or a haptic cue for which none can be judged,
+    unless it was `told` twice to ride it.
+    """
     worst = ready.worst
-    if worst.is_there or told >= 2:
+    if told >= 2 or (worst.is_there and not ready.doubt):
         return
+    if ready.doubt:
+        raise InputError(f"{ready.doubt}; {_ALL_THE_SAME}")
+    raise InputError(f"{_none(ready)}; see bikesim bench margins; {_ALL_THE_SAME}")
+
+
+def _none(ready: Preflight) -> str:
+    worst = ready.worst
     grip = worst.grip
     why = (
         f"hands off it is unstable, {-1e3 * worst.delay_margin:.0f} ms of delay too many"
@@ -111,22 +156,21 @@ def check_margins(ready: Preflight, *, told: int) -> None:
         f"{ALLOWED_EXCESS:g}), at arms of {grip.inertia:g} kg m², {grip.damping:g} N m s/rad, "
         f"{grip.stiffness:g} N m/rad"
     )
-    raise InputError(
+    cue = ", haptics as in the scenario" if ready.cued else ""
+    return (
         f"no margin at {worst.speed:g} m/s with {ready.bench.bar.inertia:.4g} kg m² and "
-        f"{1e3 * ready.bench.bar.delay:g} ms of delay: {why}; see bikesim bench margins; "
-        "--without-margin, given twice, rides all the same"
+        f"{1e3 * ready.delay:g} ms of delay{cue}: {why}"
     )
 
 
 def told(ready: Preflight, granted: Granted) -> list[str]:
     """What a ride will do, for the person who is about to hold the bar."""
-    bench, worst = ready.bench, ready.worst
+    bench = ready.bench
     limits = bench.limits
     lines = [
         f"rate     {1 / bench.period:g} Hz, bus load at most {100 * ready.load:.0f} % of "
         f"{bench.bus.bitrate / 1000:g} kbit/s",
-        f"margin   {_margin(worst)} at {worst.speed:g} m/s, {bench.bar.inertia:.4g} kg m² and "
-        f"{1e3 * bench.bar.delay:g} ms",
+        f"margin   {ready.doubt or _margin(ready)}",
         f"limits   {limits.torque:g} N m, {limits.torque_rate:g} N m/s, "
         f"{limits.continuous_torque:g} N m RMS, {bench.thresholds.trip_angle_deg:g} deg, "
         f"{bench.thresholds.trip_rate:g} rad/s",
@@ -136,10 +180,17 @@ def told(ready: Preflight, granted: Granted) -> list[str]:
     return lines
 
 
-def _margin(worst: Margin) -> str:
-    if worst.delay_margin == float("inf"):
-        return "no delay makes it unstable"
-    return f"{1e3 * worst.delay_margin:.0f} ms more delay, hands off"
+def _margin(ready: Preflight) -> str:
+    worst = ready.worst
+    if not worst.is_there:
+        return _none(ready)
+    left = "no delay makes it unstable"
+    if worst.delay_margin < math.inf:
+        left = f"{1e3 * worst.delay_margin:.0f} ms more delay, hands off"
+    return (
+        f"{left} at {worst.speed:g} m/s, {ready.bench.bar.inertia:.4g} kg m² and "
+        f"{1e3 * ready.delay:g} ms"
+    )
 
 
 def _inertia(ready: Preflight) -> str:

@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from bikesim.bench.bus import BusSettings
+from bikesim.bench.cia402_objects import doubly_written
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.faults import Thresholds
 from bikesim.bench.guard import TorqueLimits
@@ -35,7 +36,7 @@ class BarSettings(Settings):
         default=60.0, description="Mechanical stop, each side [deg]."
     )
     delay: Annotated[float, Field(ge=0, le=0.5)] = Field(
-        default=0.002, description="From the bar's motion to torque, all in all [s]."
+        description="From the bar's motion to torque, all in all [s]; bench identify measures it."
     )
     source: Literal["node", "drive"] = Field(
         default="node", description="Of steer angle and rate: the sensor node, or the drive."
@@ -73,8 +74,11 @@ class BenchSettings(Settings):
 
     @property
     def commissioning(self) -> str:
-        """What `commissioned` is once the pulse has proven signs, units and inertia as they are."""
-        drive = self.drive.model_dump(exclude={"objects", "torque_limit", "speed_limit"})
+        """What `commissioned` is once the pulse has proven signs, units and inertia as they are.
+
+        The calibration is not in it, as the sensor node has that: storing one clears the mark.
+        """
+        drive = self.drive.model_dump(exclude={"torque_limit", "speed_limit"})
         proven = {"drive": drive, "inertia": self.bar.inertia, "source": self.bar.source}
         return hashlib.sha256(json.dumps(proven, sort_keys=True).encode()).hexdigest()[:12]
 
@@ -85,6 +89,8 @@ class BenchSettings(Settings):
                 f"limits.torque = {self.limits.torque} N m: is more than drive.torque_limit = "
                 f"{self.drive.torque_limit} N m, to which the drive itself keeps"
             )
+        if isinstance(self.drive, Cia402Settings) and (wrong := doubly_written(self.drive)):
+            raise ValueError(wrong)
         if self.limits.continuous_torque > self.limits.torque:
             raise ValueError(
                 f"limits.continuous_torque = {self.limits.continuous_torque} N m: is more than "
@@ -98,6 +104,12 @@ class BenchSettings(Settings):
         t = self.thresholds
         if not t.hold_age < t.ramp_age < t.zero_age:
             raise ValueError("thresholds: hold_age, ramp_age and zero_age must rise, in this order")
+        if not t.late <= t.late_most <= self.drive.watchdog:
+            raise ValueError(
+                f"thresholds: late = {t.late} <= late_most = {t.late_most} <= "
+                f"{self.drive.watchdog} must hold, the drive's watchdog [s], as nobody feeds it "
+                "meanwhile"
+            )
         if not t.soft_stop_deg < t.trip_angle_deg <= self.bar.steer_stop_deg:
             raise ValueError(
                 f"thresholds: soft_stop_deg = {t.soft_stop_deg} < trip_angle_deg = "

@@ -1,5 +1,6 @@
 """Changing a bench profile in its file: only the entries meant, and the old one is kept."""
 
+import json
 import re
 import shutil
 import time
@@ -22,28 +23,31 @@ def own_profile(name: str) -> Path:
     return path
 
 
-def changed_text(text: str, changes: Mapping[str, float]) -> str:
-    """A profile's text with other numbers at "table.key", comments and all else as they were.
+Changes = Mapping[str, float | str]
+
+
+def changed_text(text: str, changes: Changes) -> str:
+    """A profile's text with others at "table.key" or "key", comments and all else as they were.
 
     Raises InputError where that would not be the profile meant.
     """
     lines = text.splitlines()
     for where, value in changes.items():
-        table, key = where.split(".")
-        lines = _with(lines, table, key, f"{value!r}")
+        table, _, key = where.rpartition(".")
+        lines = _with(lines, table, key, json.dumps(value))
     changed = "\n".join(lines) + "\n"
     wanted = parse_toml(text)
     for where, value in changes.items():
-        table, key = where.split(".")
-        wanted.setdefault(table, {})[key] = value
+        table, _, key = where.rpartition(".")
+        (wanted.setdefault(table, {}) if table else wanted)[key] = value
     if parse_toml(changed) != wanted:
         raise InputError(f"cannot change {', '.join(changes)} in it; write them by hand")
     BenchSettings(**parse_toml(changed))
     return changed
 
 
-def change_profile(path: Path, changes: Mapping[str, float]) -> Path:
-    """Writes other numbers into a profile; gives where the old one now is. Raises InputError."""
+def change_profile(path: Path, changes: Changes) -> Path:
+    """Writes other values into a profile; gives where the old one now is. Raises InputError."""
     with located(f"bench {path}"):
         text = changed_text(read_text(path, "bench profile"), changes)
     kept = kept_beside(path)
@@ -66,14 +70,17 @@ def kept_beside(path: Path) -> Path:
 
 
 def _with(lines: list[str], table: str, key: str, value: str) -> list[str]:
-    begin = _line(lines, rf"\s*\[\s*{re.escape(table)}\s*\]\s*(#.*)?$", 0)
+    """Without a `table`: what is before the first."""
+    begin = _line(lines, rf"\s*\[\s*{re.escape(table)}\s*\]\s*(#.*)?$", 0) if table else -1
     if begin is None:
         return [*lines, "", f"[{table}]", f"{key} = {value}"]
     after = _line(lines, r"\s*\[", begin + 1)
     end = len(lines) if after is None else after
     found = _line(lines[:end], rf"\s*{re.escape(key)}\s*=", begin + 1)
     if found is None:
-        return [*lines[: begin + 1], f"{key} = {value}", *lines[begin + 1 :]]
+        # A file begins with a comment that is about all of it.
+        at = begin + 1 if table else _line(lines, r"\s*[^#\s]", 0) or 0
+        return [*lines[:at], f"{key} = {value}", *lines[at:]]
     said: Any = re.match(r"(\s*[\w-]+\s*=\s*)[^#]*?(\s*#.*)?$", lines[found])
     line = f"{said[1]}{value}{said[2] or ''}"
     return [*lines[:found], line, *lines[found + 1 :]]

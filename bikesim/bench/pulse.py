@@ -17,8 +17,11 @@ from bikesim.errors import InputError
 MOST_TORQUE = 0.3
 """Of the pulse [N m]."""
 
-WITHIN = 0.3
-"""Of the inertia in the profile, by which the measured one may differ."""
+ALIKE = 0.7, 1.3
+"""What the bar's inertia may be of that in the profile, for a ride."""
+
+GROSSLY = 1 / 3, 3.0
+"""And for a bar that is yet to be identified: signs, units and gear are right, more is unknown."""
 
 _DURATION = 0.08  # s, each way
 _RATE = 0.3  # rad/s, that the bar is to reach
@@ -52,12 +55,18 @@ def send_pulse(
     limits: TorqueLimits,
     thresholds: Thresholds,
     heartbeat_period: float,
+    *,
+    torque: float | None = None,
+    allowed: tuple[float, float] = ALIKE,
 ) -> Pulse:
-    """On an armed rig at rest. Raises InputError where the bar contradicts the profile."""
-    torque = pulse_torque(bar)
+    """On an armed rig at rest. Raises InputError where the bar contradicts the profile.
+
+    `torque` [N m], default: as large as this bar needs; `allowed`: see `ALIKE`.
+    """
+    torque = pulse_torque(bar) if torque is None else min(torque, MOST_TORQUE)
     moments = excite(rig, _both_ways(torque), 2 * _DURATION, limits, thresholds, heartbeat_period)
     excite(rig, lambda time: 0.0, _SETTLE, limits, thresholds, heartbeat_period)
-    return judged(moments, bar, torque)
+    return judged(moments, bar, torque, allowed)
 
 
 def _both_ways(torque: float):
@@ -101,7 +110,12 @@ def excite(
         rig.wait()
 
 
-def judged(moments: Sequence[Moment], bar: BarSettings, torque: float) -> Pulse:
+def judged(
+    moments: Sequence[Moment],
+    bar: BarSettings,
+    torque: float,
+    allowed: tuple[float, float] = ALIKE,
+) -> Pulse:
     """The inertia that the first half shows, friction allowed for. Raises InputError (row 22)."""
     # What is late, and the slewing at the beginning, stay out.
     late = 0.01 + bar.delay
@@ -128,10 +142,12 @@ def judged(moments: Sequence[Moment], bar: BarSettings, torque: float) -> Pulse:
             "drive.direction, or the sign of the sensors, is wrong"
         )
     inertia = (torque - friction) / slope
-    if abs(inertia / bar.inertia - 1) > WITHIN:
+    low, high = allowed
+    if not low <= inertia / bar.inertia <= high:
         raise InputError(
             f"fault 22: the bar moves as if its inertia were {inertia:.4f} kg m², the profile has "
-            f"{bar.inertia:.4f}; allowed ±{100 * WITHIN:.0f} %: hands off? gear, torque unit?"
+            f"{bar.inertia:.4f}; allowed {low:.2g} to {high:.2g} of that: hands off? gear, torque "
+            "unit?"
         )
     return Pulse(inertia, measured / torque)
 

@@ -103,7 +103,7 @@ def _wide() -> BenchSettings:
     """A drive that can give what most recorded rigs gave, and thresholds that let it."""
     keys = {
         "bus": {"interface": "virtual", "channel": "recorded"},
-        "bar": {"inertia": 0.0427},
+        "bar": {"inertia": 0.0427, "delay": 0.0},
         "limits": {"torque": CEILING, "torque_rate": 1e5, "continuous_torque": CEILING},
         "thresholds": {
             "ramp_in": 1e-6, "follow_error": 100.0, "slip_rate": 100.0, "bias_angle": 100.0,

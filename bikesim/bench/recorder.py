@@ -114,7 +114,7 @@ class ThreadedRecorder:
                 message.timestamp, message.is_rx = sent, False
             if log is not None:
                 log.on_message_received(message)
-        return len(rows) + len(frames) >= _AT_ONCE
+        return bool(rows or frames)
 
 
 def _stand_back() -> None:

@@ -86,7 +86,7 @@ class Parts:
             self.bar,
             drive,
             clock=clock,
-            late=bench.thresholds.late_most,
+            late=bench.thresholds.late,
             others=() if self.wheel is None else (self.wheel,),
         )
 
@@ -221,7 +221,7 @@ class Ride:
         wheel: list[Monitor] = []
         if parts.wheel is not None:
             course = WheelCourse(parts.wheel, course, bench.limits.speed)
-            wheel = [WheelSilent(parts.wheel)]
+            wheel = [WheelSilent(parts.wheel, bench.thresholds.wheel_silent)]
         self.guard = BenchGuard(
             bench.limits,
             bench.thresholds,
@@ -261,8 +261,10 @@ class Ride:
 
 
 @contextmanager
-def on_the_bus(bench: BenchSettings, drive: Drive, say: Say = print) -> Iterator:
-    """The profile's bus with the drive on it set up, disabled, its watchdog proven.
+def on_the_bus(
+    bench: BenchSettings, drive: Drive, say: Say = print, *, prove: bool = True
+) -> Iterator:
+    """The profile's bus with the drive on it set up, disabled, its watchdog proven (see `Drive`).
 
     Whoever is asked for is there and nobody else commands the drive. Raises InputError.
     """
@@ -272,7 +274,7 @@ def on_the_bus(bench: BenchSettings, drive: Drive, say: Say = print) -> Iterator
     try:
         listen(bus, drive, bar, wheel)
         filter_for(bus, drive.ids)
-        for line in drive.set_up(bus):
+        for line in drive.set_up(bus, prove=prove):
             say(f"drive    {line}")
         filter_for(bus, None)
         yield bus

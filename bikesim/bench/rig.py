@@ -18,7 +18,7 @@ BENCH_CHANNELS = (
     Channel("sample_age", "s", ">= 0", "age of the newest good sensor sample at the tick"),
     Channel("sample_time", "s", "the node's clock", "when the sensor node took that sample"),
     Channel("frames_lost", "1", "in all", "sensor frames missing up to now"),
-    Channel("drive_age", "s", ">= 0", "age of the drive's newest data at the tick"),
+    Channel("drive_age", "s", ">= 0", "age of the drive's position and speed at the tick"),
     Channel("drive_enabled", "1", "0 or 1", "whether the drive was enabled, in torque mode"),
     Channel("motor_torque", "N m", "> 0 turns right", "torque as the drive measures it"),
     Channel("fault", "1", "row of the table", "fault that the guard saw in this tick; 0: none"),
@@ -33,7 +33,8 @@ _MOST_FRAMES = 64
 # few hundred come again and again, and the law's coefficients for them are at hand.
 _RESOLUTION = 2.0**20
 
-_PATIENCE, _BETWEEN = 0.05, 0.005  # s, of the farewell: in all, and from one to the next
+# Of the farewell: in all, and from one to the next [s]; how often at least.
+_PATIENCE, _BETWEEN, _LEAST = 0.05, 0.005, 2
 
 
 class Port(Protocol):
@@ -49,7 +50,9 @@ class Port(Protocol):
         """By how much a wait for frames may be longer than it should [s]."""
         ...
 
-    def send(self, frames: Iterable[Frame]) -> None: ...
+    def send(self, frames: Iterable[Frame]) -> bool:
+        """Whether all of them could be sent."""
+        ...
 
     def receive(self, timeout: float) -> Frame | None: ...
 
@@ -113,7 +116,7 @@ class BenchRig:
         self._late_limit, self._on_time = late, True
         self._sent = self._late = 0.0
         self._origin = 0.0
-        self._skipped = self._skipped_before = 0
+        self._skipped = self._skipped_before = self._left_out = 0
         self._second_master = False
         self._closed = False
         self._seen: tuple[float, BarView, DriveView] | None = None
@@ -127,7 +130,8 @@ class BenchRig:
         """The next deadline is time zero of what follows, and nothing was skipped yet."""
         self._origin = self._clock.now + self._clock.left
         self.wait()
-        self._skipped_before, self._late, self._on_time = self._skipped, 0.0, True
+        self._skipped_before, self._left_out = self._skipped, 0
+        self._late, self._on_time = 0.0, True
 
     def flush(self) -> None:
         """Forgets what came up to now: old frames, read all at once, would look like a fault."""
@@ -154,7 +158,7 @@ class BenchRig:
             bar.bad_frames, bar.frozen_frames, bar.pot_ok, bar.gyro_ok, bar.vref_ok,
             bar.estop_closed, drive.silent, drive.heartbeat_age,
             drive.trouble if self._enable else "", drive.error, drive.torque, self._sent,
-            self._late, self._port.trouble, self._second_master,
+            self._late, self._port.trouble, self._second_master, self._left_out,
         )  # fmt: skip
 
     @property
@@ -197,9 +201,10 @@ class BenchRig:
         while (left := self._clock.left - margin) > 0:
             if not self._take(left):
                 break
-        late, skipped = self._clock.wait()
-        self._skipped += skipped
-        self._late = late + skipped * self.info.period
+        late, self._left_out = self._clock.wait()
+        self._skipped += self._left_out
+        # It was to meet the first of those, whichever it serves now.
+        self._late = late + self._left_out * self.info.period
         self._on_time = self._late <= self._late_limit
 
     def close(self) -> None:
@@ -214,18 +219,28 @@ class BenchRig:
             self._port.close()
 
     def _bid_farewell(self) -> None:
-        """Twice at least, as one may get lost; the drive's answer is awaited, not for ever."""
+        """Twice at least, as one may get lost; the drive's answer is awaited, not for ever.
+
+        A bus in trouble may carry it all the same: only where it cannot be sent it ends early.
+        """
         end = self._clock.now + _PATIENCE + self._drive.heartbeat_period
         said = 0
-        while (began := self._clock.now) < end and (said < 2 or self.disabled is not True):
-            self._port.send(self._drive.farewell())
+        while (began := self._clock.now) < end and (said < _LEAST or self.disabled is not True):
+            sent = self._port.send(self._drive.farewell())
             said += 1
-            while (left := began + _BETWEEN - self._clock.now) > 0 and self._take(left):
+            self._hear_until(began + _BETWEEN)
+            if not sent and said >= _LEAST:
+                break
+
+    def _hear_until(self, end: float) -> None:
+        """What the drive says of itself; where nothing can be received the time passes too."""
+        while (left := end - self._clock.now) > 0:
+            if self._take(left):
                 seen = self._drive.view(self._clock.now)
                 if max(seen.age, seen.heartbeat_age) < math.inf:
                     self.disabled = not seen.enabled
-            if self._port.trouble:
-                break
+            elif self._clock.now < end:
+                self._clock.wait()
 
     def _take(self, timeout: float) -> bool:
         frame = self._port.receive(timeout)

@@ -114,8 +114,9 @@ class Slip:
             self._filter(o.steer, o.steer_rate, o.sample_time - self._last)
         self._last = o.sample_time
         apart = abs(self._angle_rate - self._gyro)
-        lasting = self._lasting(apart > self._limit, o.time)
-        if not apart > self._limit or lasting < self._time - 1e-6:
+        slips = not apart <= self._limit
+        lasting = self._lasting(slips, o.time)
+        if not slips or lasting < self._time - 1e-6:
             return None
         what = f"angle sensor {apart:.2f} rad/s from the gyro for {1e3 * self._time:g} ms"
         return Fault(5, what, f"{self._limit:g} rad/s", Reaction.ZERO)
@@ -158,7 +159,7 @@ class Bias:
         self._slow += share * (o.steer - self._slow)
         self._leaky += share * (self._time * rate - self._leaky)
         apart = abs(o.steer - self._slow - self._leaky)
-        if not apart > self._limit:
+        if apart <= self._limit:
             return None
         what = f"gyro's angle {apart:.3f} rad from the angle sensor's (bias)"
         return Fault(6, what, f"{self._limit:g} rad", Reaction.RAMP)

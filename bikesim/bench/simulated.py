@@ -93,12 +93,13 @@ class SimulatedBench:
 
     # Port
 
-    def send(self, frames: Iterable[Frame]) -> None:
+    def send(self, frames: Iterable[Frame]) -> bool:
         for frame in frames:
             self.sent.append((self.now, frame))
             for arrived in self._tampered(self.tamper_host, frame):
                 for device in self.plant.devices:
                     self._deliver(device.receive(arrived, self._devices_began + self.now))
+        return True
 
     def receive(self, timeout: float) -> Frame | None:
         """Whole periods pass while it waits, if they fit."""

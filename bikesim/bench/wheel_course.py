@@ -8,9 +8,6 @@ from bikesim.bench.frame import Frame
 from bikesim.bench.wheel_node import WheelDecoder, WheelSettings
 from bikesim.loop import Course, Moments
 
-SILENT = 0.5
-"""Without a good speed for so long [s] the torque ramps out; the speed is held until then."""
-
 _CHANGE = 4.0  # m/s², of the speed in the equations: above what legs and brakes do
 _ROW = 26
 
@@ -65,10 +62,10 @@ class WheelCourse:
 
 
 class WheelSilent:
-    """A monitor: no good speed for too long."""
+    """A monitor: no good speed for longer than `allowed` [s]."""
 
-    def __init__(self, wheel: Wheel) -> None:
-        self._wheel = wheel
+    def __init__(self, wheel: Wheel, allowed: float) -> None:
+        self._wheel, self._allowed = wheel, allowed
         self._arrival = -math.inf
         self._since: float | None = None
 
@@ -77,8 +74,8 @@ class WheelSilent:
         if self._wheel.arrival != self._arrival or self._since is None:
             self._arrival, self._since = self._wheel.arrival, o.time
         silent = o.time - self._since
-        if silent <= SILENT:
+        if silent <= self._allowed:
             return None
         return Fault(
-            _ROW, f"no good speed frame for {silent:.2f} s", f"{SILENT:g} s", Reaction.RAMP
+            _ROW, f"no good speed frame for {silent:.2f} s", f"{self._allowed:g} s", Reaction.RAMP
         )

@@ -97,10 +97,14 @@ def results_told(results: "Results", folder: Path, report: Path | None) -> str:
 
 
 def _which_medians(names: list[str]) -> str:
-    from bikesim.experiment.metric_table import FALL_TIME
+    from bikesim.experiment.metric_table import FALL_TIME, OF_ALL_RUNS
+    from bikesim.report.experiment.words import listed
 
-    falls = "; that of the fall time by Kaplan-Meier, of all" if FALL_TIME in names else ""
-    return f"medians of the runs that came to their end{falls}; falls with Wilson's interval"
+    of_all = [name for name in names if name in OF_ALL_RUNS and name != FALL_TIME]
+    told = ["medians of the runs that came to their end"] if set(names) - set(OF_ALL_RUNS) else []
+    told += [f"{listed(of_all)}: median of all runs"] if of_all else []
+    told += ["fall time: median by Kaplan-Meier, of all runs"] if FALL_TIME in names else []
+    return "; ".join([*told, "falls with Wilson's interval"])
 
 
 def results_json(results: "Results", folder: Path, report: Path | None) -> dict[str, Any]:
@@ -121,13 +125,11 @@ def _rows(results: "Results") -> list[dict[str, Any]]:
 
     from bikesim.experiment.metric_table import FALL_TIME, OF_ALL_RUNS, WHOLE
     from bikesim.report.experiment.rates import wilson
-    from bikesim.report.experiment.survival import kaplan_meier
+    from bikesim.report.experiment.survival import kaplan_meier, ridden
 
     names = [metric.name for metric in _primary(results)]
     numbers = results.table["condition_number"].to_numpy()  # they rise from row to row
-    columns = {
-        name: results.table[name].to_numpy(np.float64) for name in ["fell", "duration", *names]
-    }
+    columns = {name: results.table[name].to_numpy(np.float64) for name in [*OF_ALL_RUNS, *names]}
     for name in names:
         if name not in OF_ALL_RUNS:
             columns[name] = np.where(results.table["ending"] == WHOLE, columns[name], np.nan)
@@ -138,8 +140,8 @@ def _rows(results: "Results") -> list[dict[str, Any]]:
             continue
         medians = {name: _median(columns[name][first:last]) for name in names}
         if FALL_TIME in medians:
-            rides = columns["duration"][first:last], columns["fell"][first:last] > 0
-            medians[FALL_TIME] = kaplan_meier(*rides).median
+            until = ridden(*(columns[name][first:last] for name in ("duration", FALL_TIME)))
+            medians[FALL_TIME] = kaplan_meier(until, columns["fell"][first:last] > 0).median
         rate = wilson(int(columns["fell"][first:last].sum()), int(last - first))
         rows.append(
             {

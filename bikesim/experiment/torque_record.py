@@ -3,11 +3,15 @@
 import hashlib
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from bikesim.errors import InputError
 from bikesim.rider.settings import RiderSettings
 from bikesim.rider.torque_file import check_samples
 from bikesim.textfile import located, parse_toml
+
+if TYPE_CHECKING:
+    from bikesim.record.reader import Run
 
 _CHANNEL = "rider_torque"
 
@@ -28,7 +32,7 @@ def with_recorded_torque(settings: RiderSettings) -> RiderSettings:
             status = file.stat()
         except OSError as error:
             raise InputError((error.strerror or str(error)).lower()) from None
-        samples = _samples(file, status.st_mtime_ns, status.st_size)
+        samples = _samples(file, status.st_mtime_ns, status.st_size, script.inertia)
     played = script.model_copy(update={"samples": samples})
     return settings.model_copy(update={"script": played})
 
@@ -60,15 +64,28 @@ def with_file_digest(settings: RiderSettings) -> RiderSettings:
 
 # A file's time and size are asked for so that one that has changed is read again.
 @lru_cache(maxsize=4)
-def _samples(file: Path, changed: int, size: int) -> Samples:
+def _samples(file: Path, changed: int, size: int, inertia: float | None) -> Samples:
+    """The torque as recorded; where it was not, as on a bench, that of the bar by eq. 5."""
+    from bikesim.identify.bar import read_bar_torque
     from bikesim.record.reader import open_run
+    from bikesim.record.recording import is_csv
 
-    run = open_run(file)
-    if _CHANNEL not in run.names:
-        raise InputError(f"rig {run.rig} did not record {_CHANNEL}; a virtual rig does")
+    if is_csv(file) and inertia is None:
+        raise InputError("a CSV does not say its handlebar's inertia; give rider.script.inertia")
+    run = None if is_csv(file) else open_run(file)
+    if run is None or _CHANNEL not in run.names:
+        bar = read_bar_torque(file, inertia)
+        samples = tuple(zip(bar.time.tolist(), bar.torque.tolist(), strict=True))
+    elif inertia is not None:
+        raise InputError(f"has the channel {_CHANNEL}: rider.script.inertia is of no use; leave it")
+    else:
+        samples = _recorded(run)
+    check_samples(samples)
+    return samples
+
+
+def _recorded(run: "Run") -> Samples:
     # A tick has the torque of the physics step before it.
     step = parse_toml(run.scenario).get("physics_step", 0.0)
     times, torques = (run.time - step).tolist(), run.channel(_CHANNEL).tolist()
-    samples = tuple(zip(times, torques, strict=True))[1:]
-    check_samples(samples)
-    return samples
+    return tuple(zip(times, torques, strict=True))[1:]

@@ -36,13 +36,13 @@ def of_run(run: Run, bicycle: Bicycle | None, inertia: float | None, law: Law | 
     scenario = _scenario(run)
     ending = run.ending
     # What the rider felt, where the record has it: the rig's sensors add noise and lag of theirs.
-    steer = _first_of(run, "true_steer", "steer")
+    steer = first_of(run, "true_steer", "steer")
     columns = {
         "roll": run.channel("roll"),
         "roll_rate": run.channel("roll_rate"),
         "steer": steer,
-        "steer_rate": _first_of(run, "true_steer_rate", "steer_rate"),
-        "motor_torque": _motor_torque(run),
+        "steer_rate": first_of(run, "true_steer_rate", "steer_rate"),
+        "motor_torque": motor_torque(run),
         "roll_moment": run.channel("roll_moment"),
         "steer_moment": run.channel("steer_moment"),
         "heading": run.channel("heading") if "heading" in run.names else None,
@@ -117,7 +117,7 @@ def _ride(
     until = len(time) if fell is None else int(np.searchsorted(time, time[0] + fell - _BEFORE_FALL))
     if until < 2:
         raise InputError(f"{name}: fell at {fell:.2f} s: nothing before it to identify from")
-    even = _even_clock(name, time[:until], period)
+    even = even_clock(name, time[:until], period)
     return Ride(
         name=name,
         period=period,
@@ -125,14 +125,14 @@ def _ride(
         speed=float(np.mean(speed[:until])),
         speed_range=float(np.ptp(speed[:until])),
         **{
-            key: None if values is None else _at(even, time[:until], values[:until])
+            key: None if values is None else on_clock(even, time[:until], values[:until])
             for key, values in columns.items()
         },
         **about,
     )
 
 
-def _even_clock(name: str, time: Values, period: float) -> Values | None:
+def even_clock(name: str, time: Values, period: float) -> Values | None:
     """Evenly spaced times [s], None where the ticks are so already."""
     steps = np.diff(time)
     if steps.max() > _GAP * period:
@@ -146,15 +146,17 @@ def _even_clock(name: str, time: Values, period: float) -> Values | None:
     return even
 
 
-def _at(even: Values | None, time: Values, values: Values) -> Values:
+def on_clock(even: Values | None, time: Values, values: Values) -> Values:
+    """Values at `time` put on evenly spaced times by lines; as they are where `even` is None."""
     return values if even is None else np.interp(even, time, values)
 
 
-def _first_of(run: Run, *names: str) -> Values:
-    return run.channel(next(name for name in names if name in run.names))
+def first_of(run: Run, *names: str) -> Values:
+    """The first of these channels that a record has. Raises InputError for none of them."""
+    return run.channel(next((name for name in names if name in run.names), names[-1]))
 
 
-def _motor_torque(run: Run) -> Values:
+def motor_torque(run: Run) -> Values:
     """What acts from each tick on: the motor's own torque is recorded when the step is over."""
     if "motor_torque" not in run.names:
         return run.channel("sent_torque")

@@ -73,14 +73,17 @@ def torque(ride: Ride, *, from_bar: bool) -> Vector:
     `from_bar`: by eq. 5, T_δ = I δ̈ - T_f, whose mean over a block needs no acceleration: only the
     rate at its two ends. Arms are then in it. Otherwise as the record's channel says.
     """
-    every = block_ticks(ride.period)
     if from_bar:
-        # The motor's torque is held from tick to tick.
-        motor = ride.motor_torque[: (len(ride.steer) - 1) // every * every]
-        bar = ride.inertia * block_change(ride.steer_rate, every, ride.period)
-        return bar - motor.reshape(-1, every).mean(axis=1)
+        return bar_torque(ride.steer_rate, ride.motor_torque, ride.inertia, ride.period)
     assert ride.rider_torque is not None
-    return block_mean(ride.rider_torque, every)
+    return block_mean(ride.rider_torque, block_ticks(ride.period))
+
+
+def bar_torque(steer_rate: Values, motor_torque: Values, inertia: float, period: float) -> Vector:
+    """The mean of I δ̈ - T_f over each block [N m], with T_f held from tick to tick."""
+    every = block_ticks(period)
+    held = motor_torque[: (len(steer_rate) - 1) // every * every]
+    return inertia * block_change(steer_rate, every, period) - held.reshape(-1, every).mean(axis=1)
 
 
 def settled(ride: Ride) -> int:

@@ -103,8 +103,9 @@ def read_ride(
     """
     from bikesim.identify.reading import of_recording, of_run
     from bikesim.record.reader import open_run
+    from bikesim.record.recording import is_csv
 
-    if path.name.lower().endswith((".csv", ".csv.gz")):
+    if is_csv(path):
         ride = of_recording(path, bicycle, inertia, law or Law.PAPER)
     else:
         ride = of_run(open_run(path), bicycle, inertia, law)

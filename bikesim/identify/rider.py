@@ -1,6 +1,7 @@
 """Which gains a rider rode with: from his records, with intervals and what speaks against them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from bikesim.identify.diagnosis import warnings
 from bikesim.identify.estimate import FREE_LAGS, Estimate, Estimator, Method
 from bikesim.identify.excitation import excitation
 from bikesim.identify.regressors import SETTLING, block_ticks, settled
-from bikesim.identify.ride import Ride, check_together
+from bikesim.identify.ride import Passive, Ride, check_together
 from bikesim.identify.structure import Gain, Lags, Structure, Vector, structure
 
 
@@ -29,6 +30,9 @@ def identify_rider(rides: Sequence[Ride], question: Question) -> Identification:
     asked = structure(question.structure, arms=question.arms)
     lags, free = _lags(asked, question)
     source = _source(rides, question)
+    if source == "bar":
+        # The arms are in the torque, so nothing beside it holds the bar.
+        rides = [replace(ride, passive=Passive()) for ride in rides]
     method = _method(rides, question)
     _check_possible(rides, asked)
     estimator = Estimator(rides, asked, lags, free, from_bar=source == "bar")

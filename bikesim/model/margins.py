@@ -118,9 +118,14 @@ def continuous_modes(
     """The four [1/s] of the same loop in continuous time, without delay, lag, filter or coupling's
     give; least stable first.
     """
-    inertia = loop.felt_inertia + grip.inertia
-    mass, damping, stiffness = simulator_matrices(bicycle, law, speed, inertia)
+    handle = loop.felt_inertia - loop.inertia
+    felt = np.array([[1.0], [loop.scale]])
+    # A scaled torque is the law's and, of a coupling, the virtual handle's.
+    mass, damping, stiffness = (
+        felt * one for one in simulator_matrices(bicycle, law, speed, handle)
+    )
     arms = np.array([[0.0, 0.0], [0.0, 1.0]])
+    mass = mass + (loop.inertia + grip.inertia) * arms
     damping = damping + (loop.viscous_friction + grip.damping) * arms
     s = np.asarray(eigenvalues(mass, damping, stiffness + grip.stiffness * arms), complex)
     return s[np.argsort(-np.real(s))]

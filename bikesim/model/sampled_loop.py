@@ -36,7 +36,8 @@ class SampledLoop:
     torque, sensor and drive together (only their sum matters to a linear loop), without the hold of
     a torque over a `period`, which is there besides. `motor_lag` [s], a time constant.
     `sensor_interval` [s] between two sensor values, where it is longer than the period, is taken as
-    a whole number of periods. The filter is a low pass on angle and rate alike [rad/s].
+    a whole number of periods. The filter is a low pass on angle and rate alike [rad/s], or, which
+    is the same to a linear loop, on the torque. `scale` of the torque, 1: the law's.
     """
 
     inertia: float
@@ -48,6 +49,7 @@ class SampledLoop:
     filter_order: int = 2
     viscous_friction: float = 0.0
     coupling: Coupling | None = None
+    scale: float = 1.0
 
     @property
     def ticks_per_sample(self) -> int:
@@ -106,7 +108,8 @@ def controller(bicycle: Bicycle, law: Law, speed: float, loop: SampledLoop) -> C
         now = coded.step(before, loop.period, column[-2], column[-1], speed)
         columns.append([*(getattr(now, name) for name in kept), now.feedback_torque])
     table, n = np.array(columns).T, len(kept)
-    found = Controller(table[:n, :n], table[:n, n:], table[n:, :n], table[n:, n:])
+    given = loop.scale * table[n:]
+    found = Controller(table[:n, :n], table[:n, n:], given[:, :n], given[:, n:])
     if loop.filter_cutoff is None:
         return found
     return _behind_filter(found, loop)

@@ -46,10 +46,12 @@ class Recording:
 
 def read_recording(path: Path) -> Recording:
     """A record of ours, or a CSV (.csv, .csv.gz) of another rig. Raises InputError."""
-    name = path.name.lower()
-    if name.endswith((".csv", ".csv.gz")):
-        return _from_csv(path)
-    return _from_run(open_run(path))
+    return _from_csv(path) if is_csv(path) else _from_run(open_run(path))
+
+
+def is_csv(path: Path) -> bool:
+    """Whether a file is, by its name, the CSV of another rig."""
+    return path.name.lower().endswith((".csv", ".csv.gz"))
 
 
 def _from_run(run: Run) -> Recording:

@@ -24,7 +24,7 @@ _KINDS: dict[str, dict[str, Any]] = {
     },
     "chirp": {"torque": 1.0, **_BAND, "sweep": "logarithmic", "start": 0.0, "duration": 20.0},
     "file": {"file": None, "digest": None, "samples": (), "start": 0.0},
-    "record": {"file": None, "digest": None, "samples": (), "start": 0.0},
+    "record": {"file": None, "digest": None, "inertia": None, "samples": (), "start": 0.0},
 }  # fmt: skip
 SCRIPT_KINDS = tuple(_KINDS)
 
@@ -86,7 +86,13 @@ class ScriptSettings(Settings):
     )
     file: str | None = Field(
         default=None,
-        description="Text file of columns time [s] and torque [N m]; of kind record a run file.",
+        description="Text file of columns time [s] and torque [N m]; of kind record a run file, "
+        "or the CSV of another rig.",
+    )
+    inertia: Annotated[float, Field(gt=0, lt=1000)] | None = Field(
+        default=None,
+        description="Of kind record, I_δ of its bar [kg m²], where the torque follows from the "
+        "bar's motion; default: that of the record.",
     )
     digest: str | None = Field(
         default=None,

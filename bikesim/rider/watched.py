@@ -5,7 +5,7 @@ import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TypeGuard
 
 import numpy as np
 
@@ -123,15 +123,19 @@ def _is_ours(file: str) -> bool:
 
 
 def _is_number(value: object) -> bool:
+    if _is_array(value):
+        return not value.shape  # of floats np.where makes an array without dimensions
     return isinstance(value, float | int | np.floating | np.integer) and not isinstance(value, bool)
 
 
-def _is_array(value: object) -> bool:
+def _is_array(value: object) -> TypeGuard[np.ndarray]:
     return isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
 
 
 def _told(value: object) -> str:
     if isinstance(value, np.ndarray):
-        return f"an array of shape {value.shape}"
+        if value.shape:
+            return f"an array of shape {value.shape}"
+        value = value.item()
     text = repr(value)
     return text if len(text) <= 40 else f"{text[:37]}..."

@@ -1,6 +1,6 @@
 """The virtual rig: the handlebar of mjcf/rig.xml in MuJoCo, with a rider model's hands on it."""
 
-from functools import partial
+from functools import lru_cache, partial
 
 import mujoco
 import numpy as np
@@ -56,9 +56,11 @@ class VirtualRig:
         """
         self._substeps = whole_steps(period, step)
         self.info = RigInfo(name, period, inertia, settings.steer_stop, VIRTUAL_CHANNELS)
-        self._model_with = partial(
+        make = partial(
             rig_model, settings, inertia=inertia, steer_axis_tilt=steer_axis_tilt, step=step
         )
+        # Compiling takes 20 ms; a rider who grips and lets go has two pairs of arms.
+        self._model_with = lru_cache(maxsize=4)(make)
         self._arms = rider.arms
         self.model = self._model_with(arms=self._arms)
         self.data = mujoco.MjData(self.model)

@@ -4,13 +4,13 @@ import contextlib
 import os
 import pickle
 import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from typing import IO, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bikesim.child import child_command
 from bikesim.errors import InputError
 from bikesim.view.film import Film
 from bikesim.view.gl import Backend
@@ -63,7 +63,7 @@ class Crew:
 
     def _start(self, order: Order, environment: dict[str, str]) -> None:
         process = subprocess.Popen(
-            [sys.executable, "-m", "bikesim.view.worker"],
+            child_command("bikesim.view.worker"),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=environment,

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
+from bikesim.child import child_command
 from bikesim.errors import InputError
 
 _INSTALL = "install one, on Debian or Ubuntu: apt install libegl1 libgl1 libgl1-mesa-dri libosmesa6"
@@ -77,7 +78,7 @@ def _try(name: str) -> Backend | str:
     """The backend, or why it does not work."""
     try:
         ran = subprocess.run(
-            [sys.executable, "-m", "bikesim.view.gl_probe"],
+            child_command("bikesim.view.gl_probe"),
             env=_environment(name),
             capture_output=True,
             text=True,

@@ -43,7 +43,8 @@ def profile(drive: dict[str, Any] = CIA402, **tables: dict[str, Any]) -> BenchSe
         "bar": {"inertia": 0.2311},
         "drive": drive,
     }
-    return BenchSettings(**{**keys, **tables})
+    given = {**keys, **tables}
+    return BenchSettings(**{**given, "bar": {"delay": 0.002, **given["bar"]}})
 
 
 class Rows(list[tuple[Any, ...]]):

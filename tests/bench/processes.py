@@ -32,8 +32,9 @@ def written(name: str, folder: Path, bus: BusSettings | None = None, **bar: Any)
     thresholds = settings.thresholds.model_copy(
         update={
             "hold_age": 0.05, "ramp_age": 0.2, "zero_age": 0.4, "drive_age": 0.4,
-            "drive_heartbeats": 20.0, "follow_time": 0.4, "slip_time": 0.4, "late_most": 0.4,
-            "late_ticks": 400, "bad_frames": 10, "frozen_frames": 10,
+            "drive_heartbeats": 20.0, "follow_time": 0.4, "slip_time": 0.4, "late_most": WATCHDOG,
+            "late": 0.1, "skipped_share": 0.9, "late_ticks": 400,
+            "bad_frames": 10, "frozen_frames": 10,
         }
     )  # fmt: skip
     watchdog = "watchdog_timeout" if settings.drive.kind == "odrive" else "heartbeat_timeout"

@@ -1,5 +1,7 @@
 """What is refused before a ride; the emulated drive then never had a torque."""
 
+import math
+import struct
 import threading
 import time
 from collections.abc import Callable
@@ -17,7 +19,7 @@ from bikesim.bench.wheel_node import WheelSettings
 from bikesim.errors import InputError
 
 from .conftest import Wire
-from .lockstep import CIA402, DRIVES, LockStep, leaning, profile
+from .lockstep import CIA402, DRIVES, ODRIVE, LockStep, leaning, profile
 
 
 @pytest.fixture(params=DRIVES)
@@ -63,9 +65,10 @@ def test_the_drive_stays_in_fault():
     assert "0x3210" in said
 
 
-def test_a_drive_that_measures_a_torque_before_it_is_told_any():
+@pytest.mark.parametrize("allowed", [0.1, 0.5])
+def test_a_drive_that_measures_a_torque_before_it_is_told_any(allowed: float):
     """Row 25."""
-    bench = LockStep(profile(CIA402), leaning())
+    bench = LockStep(profile(CIA402, thresholds={"rest_torque": allowed}), leaning())
 
     def torque(frame: Frame, time: float) -> list[Frame]:
         return [frame._replace(data=frame.data[:2] + b"\xc8\0" + frame.data[4:])] if (
@@ -73,7 +76,23 @@ def test_a_drive_that_measures_a_torque_before_it_is_told_any():
         ) else [frame]  # fmt: skip
 
     bench.sim.tamper = torque
+    if allowed > 0.42:
+        bench.arm()
+        bench.parts.rig.close()
+        return
     assert refusal(bench).startswith("fault 25: the drive measures +0.42 N m before it is told any")
+
+
+@pytest.mark.parametrize("command", [0x09, 0x1C], ids=["estimates", "torques"])
+def test_an_odrive_sends_what_is_no_number(command: int):
+    bench = LockStep(profile(ODRIVE), leaning())
+
+    def spoil(frame: Frame, time: float) -> list[Frame]:
+        nan = frame._replace(data=struct.pack("<ff", math.nan, math.nan))
+        return [nan if frame.id == 3 << 5 | command else frame]
+
+    bench.sim.tamper = spoil
+    assert "no finite numbers: nan, nan" in refusal(bench)
 
 
 def test_its_own_command_comes_back(bench: LockStep):

@@ -7,14 +7,16 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+import tomli_w
 
-from bikesim.bench.check import with_line
+from bikesim.bench.check import remember
 from bikesim.bench.faults import Observation, Reaction
 from bikesim.bench.profile import bench_names, load_bench
 from bikesim.bench.scenario import bench_scenario, header_text, profile_of
 from bikesim.bench.stopping import Stopping
 from bikesim.bench.wheel_course import Wheel, WheelCourse, WheelSilent
 from bikesim.bench.wheel_node import WheelEncoder, WheelSettings
+from bikesim.data import data_path
 from bikesim.experiment.scenario import Scenario, to_toml
 from bikesim.loop import Moments
 
@@ -35,19 +37,32 @@ class TestProfilesThatShip:
 
 
 class TestRemembering:
-    def test_in_the_place_of_the_old(self, tmp_path: Path):
-        file = tmp_path / "b.toml"
-        file.write_text('# a bench\ncommissioned = "old"\nperiod = 0.001\n[bus]\nchannel = "x"\n')
-        assert with_line(file, 'commissioned = "new"') == (
-            '# a bench\ncommissioned = "new"\nperiod = 0.001\n[bus]\nchannel = "x"\n'
-        )
+    @pytest.fixture
+    def file(self, tmp_path: Path) -> Path:
+        bench = profile().model_dump(mode="json", exclude_none=True)
+        file = tmp_path / "mine.toml"
+        file.write_text("# a bench\n" + tomli_w.dumps({**bench, "commissioned": "old"}))
+        return file
 
-    @pytest.mark.parametrize("text", ["# a bench\n\n[bus]\nchannel = 1\n", "period = 2\n", ""])
-    def test_before_all_tables(self, tmp_path: Path, text: str):
-        file = tmp_path / "b.toml"
-        file.write_text(text)
-        changed = tomllib.loads(with_line(file, 'commissioned = "new"'))
-        assert changed == {**tomllib.loads(text), "commissioned": "new"}
+    def test_in_a_file_of_ones_own_and_what_was_is_kept(self, file: Path):
+        before = file.read_text()
+        bench = load_bench(str(file))
+        said = remember(str(file), bench)
+        assert load_bench(str(file)).commissioned == bench.commissioning
+        assert file.read_text() == before.replace('"old"', f'"{bench.commissioning}"')
+        (kept,) = file.parent.glob("*.bak")
+        assert kept.read_text() == before
+        assert str(kept) in said
+        assert remember(str(file), load_bench(str(file))).startswith("passed; as the profile says")
+        assert len(list(file.parent.iterdir())) == 2
+
+    def test_one_that_ships_is_not_written_to(self):
+        path = data_path("hardware", "benches", "example-socketcan.toml")
+        before, there = path.read_bytes(), sorted(path.parent.iterdir())
+        bench = load_bench("example-socketcan")
+        said = remember("example-socketcan", bench)
+        assert f'write into a profile of your own: commissioned = "{bench.commissioning}"' in said
+        assert (path.read_bytes(), sorted(path.parent.iterdir())) == (before, there)
 
 
 def test_the_header_has_scenario_and_profile():
@@ -95,7 +110,7 @@ class TestWheel:
 
     def test_silent_for_half_a_second_ramps_out(self):
         wheel = self.wheel(4.0)
-        look = WheelSilent(wheel)
+        look = WheelSilent(wheel, 0.5)
         assert look(at(0.0)) is None
         assert look(at(0.4)) is None
         wheel.arrival = 0.5
@@ -117,8 +132,9 @@ def at(time: float) -> Observation:
 class TestWheelRide:
     """The speed of the equations is the wheel's."""
 
-    def ridden(self, wrong) -> LockStep:
-        bench = LockStep(profile(wheel={"radius": 0.3}), Scenario(speed=4.0, duration=2.0))
+    def ridden(self, wrong, **thresholds: float) -> LockStep:
+        keys = {"wheel": {"radius": 0.3}, "thresholds": thresholds}
+        bench = LockStep(profile(**keys), Scenario(speed=4.0, duration=2.0))
         show = bench.plant.show
 
         def shown(bicycle) -> None:
@@ -143,14 +159,15 @@ class TestWheelRide:
         assert speed[1000] == pytest.approx(5.0, abs=0.003)
         assert max(b - a for a, b in pairwise(speed)) < 0.0041
 
-    def test_it_is_lost(self):
+    @pytest.mark.parametrize("silent", [0.2, 0.5])
+    def test_it_is_lost(self, silent: float):
         def lost(bench: LockStep, time: float) -> None:
             assert bench.plant.wheel is not None
             bench.plant.wheel.sensor_ok = time < 0.5
 
-        bench = self.ridden(lost)
+        bench = self.ridden(lost, wheel_silent=silent)
         assert bench.ending.reason.startswith("fault 26: no good speed frame")
-        assert bench.rows[-1][0] == pytest.approx(0.5 + 0.5 + 0.1, abs=0.02)
+        assert bench.rows[-1][0] == pytest.approx(0.5 + silent + 0.1, abs=0.02)
         assert bench.plant.torque == 0.0
 
 

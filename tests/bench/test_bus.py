@@ -84,6 +84,20 @@ class TestPort:
         assert log[0] == (0x110, None)
         assert log[1] == (0x205, pytest.approx(time.time(), abs=1.0))
 
+    def test_all_of_a_bus_is_logged_error_frames_too(self, wire: Wire):
+        """Nobody knows beforehand whose frames explain a fault."""
+        log: list[can.Message] = []
+        with wire.host() as ours, wire.host() as theirs:
+            port = BusPort(ours, {0x110}, lambda one, sent: log.append(one))
+            theirs.send(to_message(Frame(0x7FF, b"\1")))
+            theirs.send(can.Message(is_error_frame=True, is_extended_id=False))
+            theirs.send(can.Message(arbitration_id=0x110, is_extended_id=True))
+            theirs.send(to_message(Frame(0x110, b"\2")))
+            assert port.receive(0.1) == Frame(0x110, b"\2")
+        assert [(one.arbitration_id, one.is_error_frame) for one in log] == [
+            (0x7FF, False), (0, True), (0x110, False), (0x110, False)
+        ]  # fmt: skip
+
     def test_what_was_before_is_forgotten(self, wire: Wire):
         with wire.host() as ours, wire.host() as theirs:
             port = BusPort(ours, {0x110})
@@ -131,12 +145,16 @@ class TestEcho:
 
     def test_ones_own_frames_are_passed_over(self):
         with self.buses() as (ours, theirs):
-            port = BusPort(ours, {0x110, 0x205}, echoed={0x205})
+            log: list[int] = []
+            port = BusPort(
+                ours, {0x110, 0x205}, lambda one, _: log.append(one.arbitration_id), {0x205}
+            )
             for _ in range(300):
                 port.send([self.COMMAND])
                 theirs.send(to_message(Frame(0x110)))
                 assert port.receive(0.5) == Frame(0x110)
             assert port.receive(0.0) is None
+            assert log == [0x205, 0x110] * 300
 
     @pytest.mark.parametrize("identifier", [0x205, 0x080])
     def test_one_frame_of_another_is_not(self, identifier: int):

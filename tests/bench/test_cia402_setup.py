@@ -185,10 +185,10 @@ def test_what_is_not_kept_is_seen(wire: Wire, drive: Cia402Settings):
 
 
 def test_an_object_of_the_profile_is_written_too(wire: Wire, drive: Cia402Settings):
-    more = DriveObject(index=0x605A, value=2)
+    more = DriveObject(index=0x1802, subindex=2, value=5)
     device = emulated(drive)
     set_up_one(wire, device, drive.model_copy(update={"objects": (more,)}))
-    assert device.objects.get(0x605A) == 2
+    assert device.objects.get(0x1802, 2) == 5
 
 
 def test_canopens_own_node_accepts_what_is_written(wire: Wire, drive: Cia402Settings, repository):

@@ -3,7 +3,7 @@
 Row 22 is in test_pulse, 24 and 25 before a ride in test_arm.
 """
 
-from itertools import pairwise
+from itertools import count, pairwise
 
 import pytest
 
@@ -20,7 +20,7 @@ from .faulted import (
     tampered,
     zeroed_at_once,
 )
-from .lockstep import LockStep, leaning, profile
+from .lockstep import DRIVES, LockStep, leaning, profile
 
 
 def test_without_a_fault_it_ends_as_planned_and_ramps_out(bench: LockStep):
@@ -63,15 +63,56 @@ def test_row_19_one_very_late():
     assert ramped_out(bench)
 
 
-def test_row_19_twenty_late_in_a_row(bench: LockStep):
+@pytest.mark.parametrize("kind", DRIVES)
+def test_row_19_ten_late_in_a_row(kind: str):
+    """Not for longer than the drive's watchdog waits, which they do not feed."""
+    thresholds = {"ramp_in": 0.05, "late": 5e-4, "late_ticks": 10}
+    bench = LockStep(profile(DRIVES[kind], thresholds=thresholds), leaning())
+
     def late(since: float) -> None:
-        if since < 0.085:
+        if since < 0.0195:
+            bench.sim.hang = 0.001
+
+    # Each tick is two periods after the last one.
+    assert fault_of(bench, ridden(bench, late), 19) == near(10 * 2)
+    assert bench.rows[-1][0] - AT == near(120)
+    assert ramped_out(bench)
+
+
+def test_row_19_every_fourth_tick_left_out_for_ever(bench: LockStep):
+    """As where a tick takes 1.33 ms: never two late in a row, and 750 Hz instead of 1 kHz."""
+    ticks = count()
+
+    def late(since: float) -> None:
+        if next(ticks) % 3 == 2:
+            bench.sim.hang = 0.001
+
+    # A quarter of the time: a tenth of a second is reached after 0.4 s, and passed by the next one.
+    ending = ridden(bench, late)
+    assert fault_of(bench, ending, 19) == near(404)
+    assert ending.reason.startswith("fault 19: 10 % of the ticks of a second left out")
+    assert ramped_out(bench)
+
+
+def test_late_ticks_do_not_feed_the_watchdog(bench: LockStep):
+    """Where each of them is late the drive disables itself, before row 19 has counted to 20."""
+
+    def late(since: float) -> None:
+        bench.sim.hang = 0.002
+
+    after = fault_of(bench, ridden(bench, late), 17)
+    # 30 ms from the last heartbeat or torque command; a heartbeat comes each 7.5 ms.
+    told = 0.004 if bench.bench.drive.kind == "cia402" else 0.014  # by a status, or a heartbeat
+    assert 0.021 <= after <= 0.030 + told
+
+
+def test_one_late_tick_in_two_feeds_it(bench: LockStep):
+    def late(since: float) -> None:
+        if since < 0.1 and round(since * 1000) % 4 == 0:
             bench.sim.hang = 0.002
 
-    after = fault_of(bench, ridden(bench, late), 19)
-    # Each tick is three periods after the last one.
-    assert after == near(20 * 3)
-    assert bench.rows[-1][0] - AT == near(160)
+    assert ridden(bench, late).reason == "end of run"
+    assert bench.rows.channel("skipped")[-1] > 40
 
 
 def test_row_20_the_bus_fails(bench: LockStep):

@@ -48,8 +48,11 @@ def test_a_sensor_node_on_a_bus(wire: Wire):
     node, decoder = EmulatedSteerNode(), SteerDecoder()
     node.steer = 0.3
     with wire.with_devices(node) as bus:
-        frames = list(until(BusLink(bus), time.monotonic() + 0.2))
-    readings = [decoder.decode(f.data, 0.0) for f in frames if f.id == 0x110]
+        readings = [
+            decoder.decode(frame.data, time.monotonic())
+            for frame in until(BusLink(bus), time.monotonic() + 0.2)
+            if frame.id == 0x110
+        ]
     good = [one for one in readings if isinstance(one, SteerReading)]
     assert len(good) == len(readings) > 20
     assert good[-1].steer == pytest.approx(0.3, abs=1e-4)

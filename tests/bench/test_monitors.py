@@ -2,11 +2,12 @@
 
 import math
 
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from bikesim.bench.faults import Observation, Thresholds
-from bikesim.bench.monitors import AtOnce
+from bikesim.bench.faults import Fault, Observation, Reaction, Thresholds
+from bikesim.bench.monitors import AtOnce, monitors
 
 SOUND = Observation(
     time=1.0, steer=0.1, steer_rate=0.0, fresh=True, sample_time=1.0, age=0.001,
@@ -67,3 +68,61 @@ def test_each_bound_is_looked_at():
         assert fault is not None
         assert fault.row == row
     assert len(rows) == len(together.each)
+
+
+def first(**changed: object) -> tuple[float, Fault]:
+    """The first fault of all watchers, each ms, and when [s]; of what is changed at 1 s."""
+    watch = monitors(Thresholds(), heartbeat_period=0.1)
+    for tick in range(3000):
+        time = 1e-3 * tick
+        o = SOUND._replace(time=time, sample_time=time)
+        o = o._replace(**changed) if tick >= 1000 else o
+        for look in watch:
+            if (fault := look(o)) is not None:
+                return time, fault
+    raise AssertionError
+
+
+@pytest.mark.parametrize(
+    ("changed", "row", "after"),
+    [
+        ({"torque_measured": math.nan}, 16, 0.020),
+        ({"torque_sent": math.nan}, 16, 0.020),
+        ({"steer": math.nan}, 8, 0.0),
+    ],
+    ids=str,
+)
+def test_what_is_no_number_is_out_of_bounds(changed: dict, row: int, after: float):
+    time, fault = first(**changed)
+    assert (fault.row, fault.reaction) == (row, Reaction.ZERO)
+    assert time - 1.0 == pytest.approx(after, abs=1e-3)
+
+
+def test_a_rate_that_is_no_number_is_out_of_bounds():
+    time, fault = first(steer_rate=math.nan)
+    assert fault.row in (6, 9)
+    assert time - 1.0 < 0.003
+
+
+def skipping(every: int, duration: float) -> Fault | None:
+    """Each so many-th tick is left out; the fault, if there is one."""
+    watch = monitors(Thresholds(), heartbeat_period=0.1)
+    for tick in range(round(1000 * duration)):
+        if tick % every == every - 1:
+            continue
+        late = tick % every == 0 and tick > 0
+        o = SOUND._replace(
+            time=1e-3 * tick, sample_time=1e-3 * tick, late=1.2e-3 * late, skipped=int(late)
+        )
+        for look in watch:
+            if (fault := look(o)) is not None:
+                return fault
+    return None
+
+
+def test_row_19_a_tenth_of_the_ticks_left_out_is_allowed_and_more_is_not():
+    assert skipping(11, 20.0) is None
+    fault = skipping(9, 20.0)
+    assert fault is not None
+    assert (fault.row, fault.reaction) == (19, Reaction.RAMP)
+    assert str(fault) == "fault 19: 10 % of the ticks of a second left out; allowed 10 %"

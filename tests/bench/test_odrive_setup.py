@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import pytest
@@ -48,6 +49,18 @@ def test_no_torque_is_ever_given_and_nothing_is_polled(odrive: ODriveSettings):
     device._input_torque = 0.7
     set_up(SimulatedLink([device]), odrive)
     assert (device.largest, device.polled) == (0.0, 0)
+
+
+def test_without_the_proof_it_is_never_enabled(odrive: ODriveSettings):
+    class Watched(Listening):
+        def receive(self, frame: Frame, time: float) -> list[Frame]:
+            sent = super().receive(frame, time)
+            assert self.state is AxisState.IDLE
+            return sent
+
+    device = Watched(3, ODriveConfiguration.of_profile(odrive))
+    assert set_up(SimulatedLink([device]), odrive, prove=False).disarmed_after == math.inf
+    assert (device.state, device.errors, device.largest) == (AxisState.IDLE, 0, 0.0)
 
 
 def refused(device: EmulatedODrive, drive: ODriveSettings) -> str:

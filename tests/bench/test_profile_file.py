@@ -1,3 +1,4 @@
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,16 @@ def test_a_table_that_was_not_there_too():
 def test_two_changes_in_a_second_keep_both_old_ones(path: Path):
     kept = [change_profile(path, {"bar.inertia": one}) for one in (0.21, 0.22, 0.24)]
     assert len(set(kept)) == 3
+
+
+@pytest.mark.parametrize("first", ["", '\ncommissioned = "old" # then\n', "\nperiod = 0.002\n"])
+def test_a_key_of_no_table(first: str):
+    text = PROFILE.replace("\n", first or "\n", 1)
+    changed = changed_text(text, {"commissioned": "new"})
+    assert tomllib.loads(changed) == {**tomllib.loads(text), "commissioned": "new"}
+    assert changed.startswith("# My bench.\n")
+    assert ("# then" in changed) == ("# then" in text)
+    assert tomllib.loads(changed_text(changed, {"commissioned": ""}))["commissioned"] == ""
 
 
 def test_what_is_no_profile_any_more_is_not_written(path: Path):

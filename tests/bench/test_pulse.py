@@ -57,7 +57,7 @@ def test_a_wrong_gear(drive: dict, factor: float):
 
 @pytest.mark.parametrize("real", [0.15, 0.35])
 def test_a_wrong_inertia(real: float):
-    with pytest.raises(InputError, match=r"the profile has 0\.2311; allowed ±30 %"):
+    with pytest.raises(InputError, match=r"the profile has 0\.2311; allowed 0\.7 to 1\.3"):
         pulsed(profile(), profile(bar={"inertia": real}))
 
 
@@ -76,3 +76,26 @@ def test_a_pulse_proves_a_profile_until_drive_or_bar_changes():
     assert profile(bar={"inertia": 0.24}).commissioning != proven
     assert profile({**CIA402, "direction": -1}).commissioning != proven
     assert profile({**CIA402, "gear": 5.4}).commissioning != proven
+    polarity = {"index": 0x607E, "value": 0x60}
+    mirrored = profile({**CIA402, "objects": [polarity]}).commissioning
+    assert mirrored != proven
+    assert profile({**CIA402, "objects": [{**polarity, "value": 0}]}).commissioning != mirrored
+
+
+@pytest.mark.parametrize(
+    ("index", "subindex", "what"),
+    [
+        (0x6072, 0, "largest torque"),
+        (0x6080, 0, "largest motor speed"),
+        (0x1016, 1, "heartbeat of the host"),
+        (0x6007, 0, "lost connection: fault"),
+        (0x1A01, 3, "TPDO2 mapping"),
+        (0x6076, 0, "rated torque"),
+    ],
+)
+def test_an_object_that_would_undo_the_set_up_is_refused(index: int, subindex: int, what: str):
+    """With the emulated drive, 6072 = 5000 would let five times the rated torque through."""
+    entry = {"index": index, "subindex": subindex, "value": 5000}
+    with pytest.raises(InputError, match=f"{index:04X}:{subindex:02X} .{what}. is the set-up's"):
+        profile({**CIA402, "objects": [entry]})
+    profile({**CIA402, "objects": [{"index": 0x60E0, "value": 5000}]})

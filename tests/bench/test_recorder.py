@@ -44,13 +44,30 @@ def test_rows_and_frames_are_written_on_another_thread(tmp_path: Path):
             for tick in range(3000):
                 recorder.append(row(tick))
                 recorder.log(can.Message(arbitration_id=tick % 2000, is_extended_id=False))
+            recorder.log(can.Message(is_error_frame=True))
         recorder.finish(Ending("end of run"))
     run = open_run(tmp_path / "run.h5")
     assert run.ticks == 3000
     assert run.time[-1] == pytest.approx(2.999)
     assert run.ending == Ending("end of run")
-    frames = list(can.BLFReader(tmp_path / "run.blf"))
+    *frames, error = can.BLFReader(tmp_path / "run.blf")
+    assert error.is_error_frame
     assert [one.arbitration_id for one in frames] == [tick % 2000 for tick in range(3000)]
+
+
+def test_what_is_left_at_the_end_is_written_to_the_last(tmp_path: Path):
+    """However many there are: not the tens of them alone that are written at once."""
+    with writer(tmp_path / "run.h5") as record:
+        recorder = ThreadedRecorder(record, tmp_path / "run.blf")
+        for tick in range(99):
+            recorder.append(row(tick))
+        recorder.log(can.Message(arbitration_id=1, is_extended_id=False))
+        recorder._done = True  # stopped, before its thread has looked
+        with recorder:
+            pass
+        recorder.finish(Ending("end of run"))
+    assert open_run(tmp_path / "run.h5").ticks == 99
+    assert len(list(can.BLFReader(tmp_path / "run.blf"))) == 1
 
 
 class FullDisk:

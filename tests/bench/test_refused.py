@@ -1,5 +1,6 @@
 """Commands that end with one line and exit status 2, on a bus with devices; no torque is sent."""
 
+import math
 import time
 import tomllib
 from pathlib import Path
@@ -10,6 +11,7 @@ import tomli_w
 
 from bikesim.bench import calibrate_bench
 from bikesim.bench.calibration import NodeCalibration
+from bikesim.bench.cia402 import State
 from bikesim.bench.cia402_frames import DriveCommand, pack_command
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.emulated.cia402_drive import EmulatedDrive
@@ -18,6 +20,7 @@ from bikesim.bench.emulated.link import SimulatedLink
 from bikesim.bench.emulated.motor import Motor
 from bikesim.bench.emulated.steer_node import USUAL_CALIBRATION, EmulatedSteerNode
 from bikesim.bench.frame import Frame
+from bikesim.bench.profile import load_bench
 from bikesim.cli.bench import calibrate as calibrate_command
 from bikesim.cli.main import main
 
@@ -52,7 +55,7 @@ class Desk:
         """The profile; `drive`: other entries than those of the drive that is there."""
         tables = {
             "bus": {"interface": "virtual", "channel": self._wire.name},
-            "bar": {"inertia": 0.2311, **(bar or {})},
+            "bar": {"inertia": 0.2311, "delay": 0.002, **(bar or {})},
             "drive": {**CIA402, "heartbeat_timeout": 0.2, **drive},
         }
         self.path.write_text(tomli_w.dumps(tables))
@@ -160,13 +163,51 @@ class TestCalibration:
         assert node.stored == USUAL_CALIBRATION
 
     def test_one_that_fits_keeps_the_old_one(self, desk: Desk, node: HandledBar, monkeypatch):
+        mark = load_bench(str(desk.path)).commissioning
+        desk.path.write_text(f'commissioned = "{mark}"\n{desk.path.read_text()}')
         monkeypatch.setattr(calibrate_command, "ask", Person(node))
         assert main(["bench", "calibrate", "bench.toml", "--yes"]) == 0
         assert node.stored is not None
         assert node.stored.angle_scale == pytest.approx(node.sensors.angle_scale, rel=2e-3)
-        (kept,) = desk.path.parent.glob("*.bak")
+        (kept,) = desk.path.parent.glob("*.node.*.bak")
+        assert load_bench(str(desk.path)).commissioned == ""
         old = tomllib.loads(kept.read_text())
         assert NodeCalibration(**old) == pytest.approx(USUAL_CALIBRATION, abs=1e-4)
+
+
+class Watched(EmulatedDrive):
+    """Remembers what it was while it was asked."""
+
+    def __init__(self, drive: Cia402Settings) -> None:
+        super().__init__(drive.node, Motor.of_profile(drive))
+        self.was: set[State] = set()
+
+    def receive(self, frame: Frame, time: float) -> list[Frame]:
+        self.was.add(self.state)
+        return super().receive(frame, time)
+
+
+def test_an_encoder_is_calibrated_without_enabling_the_drive(desk: Desk, wire: Wire, monkeypatch):
+    """A person holds the bar; and what the pulse proved is proven no more."""
+    desk.write(bar={"source": "drive"})
+    mark = load_bench(str(desk.path)).commissioning
+    desk.path.write_text(f'commissioned = "{mark}"\n{desk.path.read_text()}')
+    device = Watched(Cia402Settings(**{**CIA402, "heartbeat_timeout": 0.2}))
+
+    def turned(question: str) -> str:
+        degrees = float(question.removeprefix("turn the bar to ").partition(" deg")[0])
+        device.angle = 5.5 * (math.radians(degrees) + 0.25)
+        time.sleep(0.05)
+        return ""
+
+    monkeypatch.setattr(calibrate_command, "ask", turned)
+    with wire.with_devices(device):
+        assert main(["bench", "calibrate", "bench.toml", "--yes", "--positions", "-30,30"]) == 0
+    after = load_bench(str(desk.path))
+    assert after.bar.drive_zero == pytest.approx(0.25, abs=1e-3)
+    assert after.commissioned == ""
+    assert State.SWITCH_ON_DISABLED in device.was
+    assert not device.was & {State.SWITCHED_ON, State.OPERATION_ENABLED}
 
 
 def test_no_permission(desk: Desk, monkeypatch):

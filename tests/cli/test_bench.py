@@ -10,6 +10,7 @@ interface = "virtual"
 channel = "nobody is here"
 [bar]
 inertia = 0.2311
+delay = 0.002
 [drive]
 kind = "cia402"
 node = 5
@@ -70,6 +71,11 @@ def test_help_of_a_command(cli, name: str):
         (["check", "none.toml"], "bench profile none.toml: no such file"),
         (["run", "cia402-emulated", "--speed", "11"], "must be at most limits.speed = 10 m/s"),
         (["run", "cia402-emulated", "--set", "start.steer_deg=5"], "start.steer_deg: a bench's"),
+        (
+            ["run", "cia402-emulated", "--speed", "7", "--set", "haptics.delay=0.1"],
+            "102 ms of delay, that of haptics included: at most 50 ms is judged; --without-margin",
+        ),
+        (["run", "cia402-emulated", "--set", "haptics.scale=-1"], "-1 reverses the torque"),
         (["run", "cia402-emulated", "--set", "spede=5"], "unknown key 'spede'"),
         (["emulate", "cia402-emulated", "--rider", "nobody"], "unknown rider 'nobody'"),
         (["emulate", "cia402-emulated", "--mishaps", "none.toml"], "mishaps none.toml: no such"),
@@ -84,6 +90,7 @@ def test_what_cannot_be(refusal, arguments: list[str], message: str):
     ("change", "message"),
     [
         (("inertia = 0.2311", ""), "bench bench.toml: bar.inertia: must be given"),
+        (("delay = 0.002", ""), "bench bench.toml: bar.delay: must be given"),
         (("torque_limit = 3.5", ""), "drive.torque_limit: must be given"),
         (('"uNm"', '"Nm"'), "torque_unit = 'Nm': must be 'uNm' or 'mNm'"),
         (("torque_limit = 3.5", "torque_limit = 3.0"), "limits.torque = 3.5 N m: is more than dr"),
@@ -91,6 +98,8 @@ def test_what_cannot_be(refusal, arguments: list[str], message: str):
         (("node = 5", "node = 127"), "host_node = 127: is the drive's own node"),
         (('"cia402"', '"servo"'), "kind"),
         (("inertia = 0.2311", "inertia = 0.2311\nsteer_stop_deg = 40.0"), "trip_angle_deg"),
+        (("[drive]", "[thresholds]\nlate_most = 0.04\n[drive]"), "late_most = 0.04 <= 0.03 must"),
+        (("[drive]", "[thresholds]\nlate = 0.025\n[drive]"), "late = 0.025 <= late_most = 0.02 <="),
     ],
     ids=str,
 )
@@ -137,7 +146,7 @@ def test_never_commissioned(refusal, bench):
 
 
 def test_a_speed_without_margin_must_be_wanted_twice(cli, refusal, bench):
-    light = bench(("inertia = 0.2311", "inertia = 0.0427\ndelay = 0.02"))
+    light = bench(("inertia = 0.2311", "inertia = 0.0427"), ("delay = 0.002", "delay = 0.02"))
     arguments = ("bench", "run", light, "--uncommissioned", "--speed", "7", "-o", "r.h5")
     assert "no margin at 7 m/s with 0.0427 kg m² and 20 ms of delay" in refusal(*arguments)
     assert "no margin" in refusal(*arguments, "--without-margin")
@@ -149,6 +158,8 @@ def test_a_record_that_is_there_is_not_replaced(refusal, bench):
     Path("r.h5").write_text("mine")
     Path("s.blf").write_text("mine")
     run = ("bench", "run", bench(), "--uncommissioned", "-o")
+    # Nobody is on this bus: so it is known before anything is looked for there.
+    assert "r.h5: is already there; --force replaces it" in refusal(*run, "r.h5")
     assert "s.blf: is already there; --force replaces it" in refusal(*run, "s.h5")
     assert Path("r.h5").read_text() == "mine"
 

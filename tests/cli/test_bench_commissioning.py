@@ -10,6 +10,7 @@ interface = "virtual"
 channel = "nobody is here"
 [bar]
 inertia = 0.2311
+delay = 0.002
 [drive]
 kind = "odrive"
 node = 3
@@ -37,6 +38,7 @@ def bench(tmp_path) -> str:
         (["identify", "BENCH", "--added-inertia", "0"], "--added-inertia 0.0"),
         (["identify", "BENCH", "--confidence", "1"], "--confidence 1.0"),
         (["identify", "cia402-emulated", "--write"], "ships with bikesim; copy a profile"),
+        (["calibrate", "cia402-emulated"], "ships with bikesim; copy a profile"),
         (["identify", "nowhere"], "unknown bench 'nowhere'"),
         (["identify", "BENCH"], "nobody answers at the terminal"),
     ],

@@ -67,6 +67,30 @@ def rows(folder: Path) -> list[dict[str, str]]:
     return [{name: repr(value) for name, value in row.items()} for row in table.to_pylist()]
 
 
+def test_medians_say_of_which_runs_they_are(cli, file, tmp_path: Path):
+    """With haptics off all fall: the duration is theirs, and ends a tick after the fall."""
+    text = (
+        SMALL.replace("duration = 0.2", "duration = 10.0")
+        + """
+[report]
+metrics = ["fall_time", "duration", "roll_rms"]
+"""
+    )
+    said = cli("experiment", file(text), "--jobs", 1, "--no-report")
+    assert (
+        "medians of the runs that came to their end; duration: median of all runs; fall time: "
+        "median by Kaplan-Meier, of all runs; falls with Wilson's interval"
+    ) in said.out.splitlines()
+    told = cli("experiment", "e.toml", "--jobs", 1, "--no-report", "--json").json
+    table = pq.read_table(tmp_path / "runs/e" / "results.parquet").to_pandas()
+    off = table[table["law"] == "off"]
+    assert off["fell"].tolist() == [1, 1]
+    medians = told["conditions"][1]["medians"]
+    # Of two the first time by which half have fallen.
+    assert medians["fall_time"] == off["fall_time"].min() < off["duration"].min()
+    assert medians["duration"] == pytest.approx(off["duration"].mean())
+
+
 def test_it_tells_what_came_of_it_and_again_computes_nothing(cli, file, tmp_path: Path):
     said = cli("experiment", file(SMALL), "--jobs", 1)
     assert said.status == 0

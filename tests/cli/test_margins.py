@@ -85,6 +85,7 @@ interface = "virtual"
 channel = "x"
 [bar]
 inertia = 0.1
+delay = 0.002
 [drive]
 kind = "odrive"
 node = 3

@@ -14,7 +14,7 @@ from bikesim.model.margins import (
     margin_at,
     sampled_modes,
 )
-from bikesim.model.sampled_loop import RELEASED, SampledLoop, controller
+from bikesim.model.sampled_loop import RELEASED, Grip, SampledLoop, controller, with_coupling
 
 # Speed [m/s] and pure delay that the loop survives hands off [ms]; SCIENCE, Sec. 5.
 PUBLISHED = [
@@ -138,3 +138,18 @@ def test_haptics_off_has_no_loop_to_become_unstable(benchmark: Bicycle):
     assert margin.delay_margin == math.inf
     assert margin.excess == pytest.approx(0, abs=1e-6)
     assert margin.is_there
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5])
+@pytest.mark.parametrize("scale", [1.0, 0.4, 0.0])
+def test_a_scaled_loop_that_is_fast_is_nearly_continuous(
+    benchmark: Bicycle, share: float, scale: float
+):
+    """Matrices against the code that runs; of a coupling, one with hardly any give."""
+    loop = SampledLoop(0.1, 1e-4, viscous_friction=0.2, scale=scale)
+    if share:
+        loop = with_coupling(loop, share, benchmark, Law.PAPER, 2000.0)
+    grip = Grip(0.05, 0.4, 8.0)
+    sampled = sampled_modes(controller(benchmark, Law.PAPER, 4.0, loop), loop, grip)
+    for mode in continuous_modes(benchmark, Law.PAPER, 4.0, loop, grip):
+        assert np.abs(sampled - mode).min() < 0.05

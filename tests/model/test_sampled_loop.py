@@ -28,6 +28,7 @@ LOOPS = {
     "lag": SampledLoop(0.2, 0.005, 0.002, motor_lag=0.01),
     "filter": SampledLoop(0.2, 0.005, 0.0, filter_cutoff=60.0, filter_order=3),
     "slow sensor": SampledLoop(0.2, 0.005, 0.003, sensor_interval=0.02),
+    "scaled": SampledLoop(0.2, 0.005, 0.005, scale=0.4),
 }
 
 
@@ -66,7 +67,7 @@ def ridden(bicycle: Bicycle, speed: float, loop: SampledLoop, grip: Grip, time: 
             held = bar[:2].copy()
         seen = held if filters is None else [f(x) for f, x in zip(filters, held, strict=True)]
         state = haptic.step(state, (k + 1) * loop.period, float(seen[0]), float(seen[1]), speed)
-        sent.append(state.feedback_torque)
+        sent.append(loop.scale * state.feedback_torque)
         rows.append(bar[0])
         if part > 1e-9:
             bar = moved(bar, sent[-2 - whole], part)
@@ -89,8 +90,9 @@ def test_the_modes_are_those_of_the_loop_as_it_runs(benchmark: Bicycle, name: st
     assert np.abs(left).max() < 1e-7 * np.abs(steer).max() * np.abs(recurrence).sum(), order
 
 
-def test_the_modes_of_a_coupled_loop_too(benchmark: Bicycle):
-    loop = with_coupling(SampledLoop(0.06, 0.002, 0.003), 0.8, benchmark, Law.PAPER)
+@pytest.mark.parametrize("scale", [1.0, 0.3])
+def test_the_modes_of_a_coupled_loop_too(benchmark: Bicycle, scale: float):
+    loop = with_coupling(SampledLoop(0.06, 0.002, 0.003, scale=scale), 0.8, benchmark, Law.PAPER)
     steer = np.array(ridden(benchmark, 5.0, loop, Grip(), 0.3))
     modes = sampled_modes(controller(benchmark, Law.PAPER, 5.0, loop), loop)
     recurrence = np.real(np.poly(np.exp(modes * loop.period)))

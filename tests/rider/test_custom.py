@@ -56,6 +56,15 @@ class Text(Mine):
 class Shape(Mine):
     def torque(self, seen):
         return np.zeros(7)
+class Where(Mine):
+    def intend(self, steer, steer_rate, seen):
+        return np.where(seen.roll > 0, 0.25, -0.25)
+class Same(Mine):
+    def intend(self, steer, steer_rate, seen):
+        return np.array(0.25)
+class Infinite(Mine):
+    def torque(self, seen):
+        return np.array(math.inf)
 class Positional(Mine):
     def __init__(self, setting, gain):
         pass
@@ -95,6 +104,19 @@ def test_each_of_many_gets_his_own(theirs: Path, make_many, seen):
     assert torques.tolist() == [1.0, 0.5, 2.0]
 
 
+@pytest.mark.parametrize(("name", "alone"), [("Where", -0.25), ("Same", 0.25)])
+def test_an_array_without_dimensions_is_a_number(
+    theirs: Path, make, make_many, seen, name: str, alone: float
+):
+    """As np.where gives one for floats."""
+    del theirs
+    torque = make(f"theirs.py:{name}").torque(0.0, 0.0, seen(-0.1))
+    assert (type(torque), torque) == (float, alone)
+    many = make_many([RiderSettings(name=f"theirs.py:{name}")] * 3)
+    torques = many.torque(np.zeros(3), np.zeros(3), seen(np.array([0.1, -0.1, 0.1])))
+    assert torques.tolist() == [0.25, alone, 0.25]
+
+
 def test_he_may_have_a_body(theirs: Path, make, seen):
     del theirs
     rider = make("theirs.py:Mine", visual_delay=0.01, arm_damping=2.0, torque_limit=0.3)
@@ -127,6 +149,7 @@ WRONG = (
     ("Exits", "raised SystemExit at 0.0505 s (theirs.py, line 32): 0", ""),
     ("Nothing", "gave None at 0.0505 s: must be a finite number", "gave None at 0.0505 s: must be"),
     ("Text", "gave 'left' at 0.0505 s: must be a finite number", "gave 'left' at 0.0505 s: must"),
+    ("Infinite", "gave inf at 0.0505 s: must be a finite number", "gave inf for rider 1 of 3 at"),
     ("Shape", "gave an array of shape (7,) at 0.0505 s: must be", "of shape (7,) at 0.0505 s: mus"),
 )
 

@@ -13,6 +13,12 @@ def test_finds_one_that_draws_large_pictures(backend: Backend):
     assert backend.renderer in backend.told
 
 
+def test_modules_of_the_current_folder_are_not_its_own(tmp_path: Path, monkeypatch, backend):
+    (tmp_path / "bikesim.py").write_text("raise SystemExit(1)\n")
+    monkeypatch.chdir(tmp_path)
+    assert find_backend() == backend
+
+
 def test_takes_the_one_that_the_user_asks_for(monkeypatch):
     monkeypatch.setenv("MUJOCO_GL", "osmesa")
     found = find_backend()
@@ -45,7 +51,7 @@ def no_library(monkeypatch, tmp_path: Path) -> None:
     for package in (tmp_path / "OpenGL", tmp_path / "glfw"):
         package.mkdir()
         (package / "__init__.py").write_text("raise ImportError('no library found')")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
 
 

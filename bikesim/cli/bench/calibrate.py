@@ -37,9 +37,12 @@ class Calibrate:
 
     def __call__(self) -> int:
         from bikesim.bench.profile import load_bench
+        from bikesim.bench.profile_file import own_profile
 
         positions = parse_positions(self.positions)
         bench = load_bench(self.bench)
+        if bench.commissioned:
+            own_profile(self.bench)
         if bench.bar.source == "drive":
             return self._encoder(bench, positions)
         return self._node(bench, positions)
@@ -57,10 +60,13 @@ class Calibrate:
             if not self._agreed("store it in the sensor node"):
                 return 0
             kept = _keep(self.bench, old)
+            # First: a mark that is missing costs a pulse, one too many a ride with a wrong sign.
+            _clear_mark(self.bench, bench)
             calibrator.store(found.calibration)
         finally:
             close_bus(bus)
         print(f"stored in the node; as it was: {kept}")
+        _tell_next(self.bench)
         return 0
 
     def _encoder(self, bench: "BenchSettings", positions: list[float]) -> int:
@@ -77,8 +83,10 @@ class Calibrate:
         print(f"drive_zero  {zero:g} rad (profile: {bench.bar.drive_zero:g})")
         if not self._agreed(f"write it into {path}"):
             return 0
-        kept = change_profile(path, {"bar.drive_zero": zero})
+        cleared = {"commissioned": ""} if bench.commissioned else {}
+        kept = change_profile(path, {"bar.drive_zero": zero, **cleared})
         print(f"written to {path}; as it was: {kept}")
+        _tell_next(self.bench)
         return 0
 
     def _agreed(self, what: str) -> bool:
@@ -86,6 +94,18 @@ class Calibrate:
             return True
         print("nothing was changed")
         return False
+
+
+def _clear_mark(name: str, bench: "BenchSettings") -> None:
+    """Other sensors or signs: what the pulse proved is proven no more."""
+    from bikesim.bench.profile_file import change_profile, own_profile
+
+    if bench.commissioned:
+        change_profile(own_profile(name), {"commissioned": ""})
+
+
+def _tell_next(name: str) -> None:
+    print(f"the pulse has to be passed again: bikesim bench check {name} --pulse, hands off")
 
 
 def parse_positions(text: str) -> list[float]:

@@ -19,7 +19,7 @@ class Check:
     bench: BenchName
     pulse: Flag = False
     """The commissioning pulse too (at most 0.3 N m, hands off the bar!); a profile that is a file
-    then remembers that this bar and drive passed it."""
+    of yours then remembers that this bar and drive passed it."""
     json: Flag = False
     """Print JSON."""
 

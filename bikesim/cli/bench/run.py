@@ -75,7 +75,7 @@ class Run:
         frames = None if self.no_frames else output.with_suffix(".blf")
         picture = output.with_name(f"{output.stem}-timing.png") if self.report else None
         check_apart(output, *filter(None, (self.scenario, frames, picture)))
-        for path in filter(None, (frames, picture)):
+        for path in filter(None, (output, frames, picture)):
             check_output(path, force=self.force)
         order = Order(
             self.bench,

@@ -57,7 +57,7 @@ def table_of(
     import pyarrow as pa
 
     share = done.seconds / max(1, len(done.results))
-    by = (worker, batch, done.started, share, *Versions.gather())
+    by = (worker, batch, done.started, share, *done.versions)
     rows = []
     for result, metrics in zip(done.results, done.metrics, strict=True):
         condition = study.condition(result.run.condition)

@@ -3,16 +3,18 @@
 import os
 import signal
 import subprocess
-import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
+from pickle import UnpicklingError
 from typing import NamedTuple, Protocol, Self
 
+from bikesim.child import child_command
 from bikesim.experiment.study.work import Answer, Order, Progress
 
+_ENDING = 5.0  # [s] for a process that has closed its connection
 # A batch uses one core: a thread pool in each of many processes only gets in their way.
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
@@ -145,7 +147,7 @@ class LocalCrew:
         ours, theirs = Pipe()
         with theirs:
             process = subprocess.Popen(
-                [sys.executable, "-m", "bikesim.experiment.study.worker", str(theirs.fileno())],
+                child_command("bikesim.experiment.study.worker", str(theirs.fileno())),
                 pass_fds=(theirs.fileno(),),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
@@ -162,7 +164,8 @@ def _heard(worker: _Worker) -> Event | None:
     assert worker.order is not None
     try:
         said = worker.connection.recv()
-    except (EOFError, ConnectionError):
+    # It may end in the middle of its answer.
+    except (EOFError, OSError, UnpicklingError):
         return Lost(worker.order, _end(worker))
     if isinstance(said, Progress):
         worker.progress = said
@@ -174,5 +177,9 @@ def _heard(worker: _Worker) -> Event | None:
 def _end(worker: _Worker) -> str:
     """Tidy up after a worker; how it ended."""
     worker.connection.close()
-    status = worker.process.wait()
+    try:
+        status = worker.process.wait(_ENDING)
+    except subprocess.TimeoutExpired:  # it is still there, but not to be understood
+        worker.process.kill()
+        status = worker.process.wait()
     return f"signal {signal.Signals(-status).name}" if status < 0 else f"status {status}"

@@ -1,8 +1,10 @@
 """Workers of a Dask cluster: one that is there already, or one of this machine."""
 
-import hashlib
+import os
 import signal
+import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from multiprocessing import resource_tracker
@@ -10,16 +12,16 @@ from typing import TYPE_CHECKING, Any, Self
 
 from bikesim.errors import InputError
 from bikesim.experiment.study.crew import Answered, Event, Lost
-from bikesim.experiment.study.versions import Versions
-from bikesim.experiment.study.work import Answer, Order, work
+from bikesim.experiment.study.dask_worker import TOPIC, answer_of, call, do, software
+from bikesim.experiment.study.work import Order, Refused
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster
 
 _CONNECTING = 10.0  # [s]
 _DESERTED = 60.0  # [s]; a worker that died is replaced within a few
+_SAFE_PATH = "PYTHONSAFEPATH"
 _ROUTES = "distributed.scheduler.http.routes"
-_TOPIC = "bikesim-progress"
 
 
 class DaskCrew:
@@ -35,9 +37,10 @@ class DaskCrew:
         with ExitStack() as opening:
             client: Any = self._connected(opening)
             self._client = opening.enter_context(client)
-            self._check()
+            self._check_versions()
+            self._tell_repeats()
             self._inhabited = time.monotonic()
-            self._client.subscribe_topic(_TOPIC, self._hear)
+            self._client.subscribe_topic(TOPIC, self._hear)
             self._open = opening.pop_all()
         return self
 
@@ -69,7 +72,7 @@ class DaskCrew:
 
     def give(self, order: Order) -> None:
         # Not pure: an order that was lost is given again.
-        self._orders[self._client.submit(_do, order, pure=False)] = order
+        self._orders[self._client.submit(*call(do, order), pure=False)] = order
 
     def wait(self, seconds: float) -> list[Event]:
         from distributed import wait
@@ -110,8 +113,10 @@ class DaskCrew:
             return Lost(order, "the scheduler")
         if error is not None:
             return Lost(order, " ".join(str(error).split()))
-        answer, worker = future.result()
-        return Answered(order, answer, worker)
+        answered, why = answer_of(future.result())
+        if answered is None:
+            return Answered(order, Refused(f"its Dask worker cannot ride: {why}"), "")
+        return Answered(order, *answered)
 
     def _hear(self, event: Any) -> None:
         _, (key, fraction) = event
@@ -138,6 +143,7 @@ class DaskCrew:
         # HTTP: another way into this machine. Set for as long as the cluster is there.
         settings = {"distributed.scheduler.allowed-failures": 0, _ROUTES: []}
         opening.enter_context(configured(settings))
+        opening.enter_context(_without_the_current_folder())
         with _deaf_to_interrupts():
             cluster: Any = LocalCluster(
                 n_workers=self._count,
@@ -150,15 +156,61 @@ class DaskCrew:
             )
         return opening.enter_context(cluster)
 
-    def _check(self) -> None:
-        """Each worker must have our versions: its results stand beside those of others."""
-        ours = Versions.gather()
-        theirs: Any = self._client.run(Versions.gather)
-        if not theirs:
-            raise InputError(f"--scheduler {self._scheduler}: has no workers yet")
-        for versions in theirs.values():
-            if versions != ours:
-                raise InputError(f"a Dask worker has {versions}, this is {ours}")
+    def _check_versions(self) -> None:
+        """Raises InputError unless each worker that is there has our versions.
+
+        One that comes later is asked with each batch. A scheduler only hands on.
+        """
+        ours = software()
+        told: Any = self._client.run(*call(software), on_error="return")
+        where = f"--scheduler {self._scheduler}" if self._scheduler else "--workers"
+        if not told:
+            raise InputError(f"{where}: has no workers yet")
+        wrong = Counter(_wrong(returned, ours) for returned in told.values())
+        del wrong[""]
+        if wrong:
+            kinds = (f"{n} of its {len(told)} workers: {what}" for what, n in sorted(wrong.items()))
+            raise InputError(f"{where}: {'; '.join(kinds)}; this is {ours}")
+
+    def _tell_repeats(self) -> None:
+        """A line where the scheduler itself gives a batch again that has killed its worker."""
+        with suppress(Exception):  # whether it tells, and what, is up to its version
+            again: Any = self._client.run_on_scheduler(_allowed_failures())
+            if again > 0:
+                print(
+                    f"note: this Dask scheduler gives a batch whose worker dies to {again} more "
+                    "before it says so; distributed.scheduler.allowed-failures = 0 makes it one",
+                    file=sys.stderr,
+                )
+
+
+def _wrong(returned: Any, ours: str) -> str:
+    theirs, why = answer_of(returned)
+    if theirs is None:
+        return why
+    return "" if theirs == ours else theirs
+
+
+def _allowed_failures() -> Any:
+    """A function for the scheduler; by its code, as `call` says."""
+    return lambda dask_scheduler: dask_scheduler.allowed_failures
+
+
+@contextmanager
+def _without_the_current_folder() -> Iterator[None]:
+    """Python processes begun inside do not seek modules in it, where a signal.py may lie.
+
+    Dask tells its workers where this one finds its own, but only when they have begun.
+    """
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_SAFE_PATH]
+        else:
+            os.environ[_SAFE_PATH] = before
 
 
 @contextmanager
@@ -175,20 +227,3 @@ def _deaf_to_interrupts() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _do(order: Order) -> tuple[Answer, str]:
-    from distributed import get_worker
-
-    worker = get_worker()
-    key = worker.get_current_task()
-
-    def report(fraction: float) -> bool:
-        worker.log_event(_TOPIC, (key, fraction))
-        task = worker.state.tasks.get(key)
-        # Whoever asked for it has gone, or wants it no more.
-        return task is None or task.state == "cancelled"
-
-    # Not its address: a table of results should not name machines.
-    name = hashlib.sha256(worker.address.encode()).hexdigest()[:6]
-    return work(order, report), f"dask-{name}"

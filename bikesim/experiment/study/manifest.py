@@ -3,7 +3,7 @@
 import hashlib
 import json
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -11,13 +11,12 @@ from typing import Any, NamedTuple, Self
 import bikesim
 from bikesim.errors import InputError
 from bikesim.experiment.metric_table import METRICS
+from bikesim.experiment.study.named_files import Files, union
 from bikesim.experiment.study.plan import Study
 from bikesim.experiment.study.settings import Experiment
 from bikesim.experiment.study.versions import Versions
 from bikesim.record.output import put_in_place, unwritable
 from bikesim.record.provenance import source_commit
-from bikesim.rider.kinds import is_custom
-from bikesim.rider.source_files import package_version, source_files
 
 MANIFEST, EXPERIMENT = "manifest.json", "experiment.toml"
 _FORMAT = "bikesim experiment 1"
@@ -35,7 +34,7 @@ class Manifest(NamedTuple):
 
     digest: str
     runs: int
-    files: dict[str, str]
+    files: Files
     versions: Versions
     commit: str | None
     created: str
@@ -44,21 +43,17 @@ class Manifest(NamedTuple):
     def of(cls, study: Study) -> Self:
         """That of a study, now."""
         digest = hashlib.sha256()
-        named: dict[str, str] = {}
         for condition in study.conditions:
             keys = condition.scenario.model_dump(mode="json", exclude={"seed"})
             told = [condition.name, condition.values, keys]
             digest.update(json.dumps(told, sort_keys=True).encode())
-            named |= {str(path): path_digest for path, path_digest in _files(keys)}
-        for name in sorted({condition.scenario.rider.name for condition in study.conditions}):
-            named |= _of_rider(name)
         metrics = [metric.name for metric in METRICS]
         told = [study.experiment.seeds, metrics]
         digest.update(json.dumps(told).encode())
         return cls(
             digest=digest.hexdigest(),
             runs=study.runs,
-            files=named,
+            files=union(study.files),
             versions=Versions.gather(),
             commit=source_commit(Path(bikesim.__file__).parents[1]),
             created=datetime.now(UTC).isoformat(timespec="seconds"),
@@ -142,36 +137,6 @@ def write_text(path: Path, text: str) -> None:
             part.write_text(text, "utf-8")
     except OSError as error:
         raise unwritable(path, error) from error
-
-
-def _files(keys: Any) -> Iterator[tuple[Path, str]]:
-    """The files that a scenario names anywhere, with their digests."""
-    if isinstance(keys, Mapping):
-        keys = list(keys.values())
-    if isinstance(keys, list):
-        for value in keys:
-            yield from _files(value)
-    elif isinstance(keys, str):
-        # "frame.txt+rider.txt" is two files, "rider.py:Class" is one.
-        for name in {keys, *keys.split("+"), keys.rpartition(":")[0]}:
-            path = Path(name)
-            if "." in name and len(name) < 1000 and path.is_file():
-                yield path, _digest(path)
-
-
-def _of_rider(name: str) -> dict[str, str]:
-    """The files of a rider of the user's own with their digests, and his package's version."""
-    if not is_custom(name):
-        return {}
-    found = {told: _digest(path) for told, path in source_files(name).items()}
-    if not name.rpartition(":")[0].endswith(".py") and (is_ := package_version(name)):
-        found[f"version of {name.partition('.')[0].partition(':')[0]}"] = is_
-    return found
-
-
-def _digest(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _differing(was: Any, is_: Any, place: str) -> str:

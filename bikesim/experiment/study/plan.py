@@ -13,6 +13,7 @@ from bikesim.experiment.history import history_bytes
 from bikesim.experiment.study.contrasts import check_contrasts
 from bikesim.experiment.study.factors import Factor, make_factors
 from bikesim.experiment.study.grid import Condition, count_conditions, make_conditions
+from bikesim.experiment.study.named_files import Files, files_of_each
 from bikesim.experiment.study.settings import Experiment
 
 
@@ -56,6 +57,11 @@ class Study:
             found.setdefault(batch_key(condition.scenario), []).append(condition)
         groups = sorted(found.values(), key=lambda group: -group[0].scenario.ticks)
         return tuple(tuple(group) for group in groups)
+
+    @cached_property
+    def files(self) -> tuple[Files, ...]:
+        """Those that each condition is made of, as they are when first asked for."""
+        return files_of_each(condition.scenario for condition in self.conditions)
 
     def ids(self) -> Iterator[RunId]:
         """All runs, condition by condition."""

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bikesim.errors import InputError
 from bikesim.experiment.history import History
 from bikesim.experiment.scenario import Scenario
 from bikesim.experiment.study.plan import Study
@@ -46,13 +47,16 @@ def trials_of(study: Study) -> list[Trial]:
 def apart(trial: Trial, interrupted: Callable[[], bool]) -> str:
     """How his rides in a batch differ from those alone; empty where they are the same.
 
-    Raises InputError for what he does wrong.
+    What he does wrong in a batch is no difference: the ride itself tells it, with the run that it
+    is in. Raises InputError for what he does wrong alone, which no batch would tell.
     """
     from bikesim.experiment.batch import ride_batch
 
-    for scenario, outcome in zip(
-        trial.scenarios, ride_batch(trial.scenarios, interrupted), strict=True
-    ):
+    try:
+        outcomes = ride_batch(trial.scenarios, interrupted)
+    except InputError:
+        return ""
+    for scenario, outcome in zip(trial.scenarios, outcomes, strict=True):
         if told := _apart(_alone(scenario, interrupted), outcome.history):
             return (
                 f"rider {trial.rider} does not ride in a batch as he does alone: {told}; "

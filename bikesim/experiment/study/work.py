@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -10,18 +9,22 @@ from typing import NamedTuple
 from bikesim.errors import InputError
 from bikesim.experiment.metrics import Metrics
 from bikesim.experiment.scenario import Scenario
+from bikesim.experiment.study.basis import Basis
+from bikesim.experiment.study.named_files import union
 from bikesim.experiment.study.plan import Batch, RunId, Study
 from bikesim.experiment.study.trial import Trial, apart
+from bikesim.experiment.study.versions import Versions
 
 # Tells how far a piece of work is, from 0 to 1, and whether it is to end.
 Report = Callable[[float], bool]
 
 
 class Ride(NamedTuple):
-    """A batch to ride: each condition's scenario, by its number."""
+    """A batch to ride: each condition's scenario, by its number; and what it was planned with."""
 
     batch: Batch
     scenarios: dict[int, Scenario]
+    basis: Basis
 
     @property
     def runs(self) -> int:
@@ -54,13 +57,14 @@ class Done(NamedTuple):
     """What came of a ride or of a run to keep; without those that were interrupted.
 
     `metrics` are those of each result; a trial has neither. `started` is a time in UTC, `seconds`
-    [s] how long it took.
+    [s] how long it took, `versions` those of the process that did it.
     """
 
     results: tuple[Result, ...]
     metrics: tuple[Metrics, ...]
     started: str
     seconds: float
+    versions: Versions
 
 
 class Progress(float):
@@ -79,8 +83,9 @@ Answer = Done | Refused
 
 def order_of(study: Study, batch: Batch) -> Ride:
     """A batch with all that its worker needs."""
-    numbers = {run.condition for run in batch.runs}
-    return Ride(batch, {number: study.condition(number).scenario for number in numbers})
+    numbers = sorted({run.condition for run in batch.runs})
+    basis = Basis(Versions.gather(), union(study.files[number - 1] for number in numbers))
+    return Ride(batch, {number: study.condition(number).scenario for number in numbers}, basis)
 
 
 def scenario_of(scenario: Scenario, seed: int) -> Scenario:
@@ -108,23 +113,25 @@ def work(order: Order, report: Report) -> Answer:
         return Refused(f"{type(error).__name__}: {error} ({_place(error)})")
 
 
-def _ride(order: Ride, report: Report) -> Done:
+def _ride(order: Ride, report: Report) -> Answer:
     from bikesim.experiment.batch import ride_batch
     from bikesim.experiment.metrics import measure
 
+    if differs := order.basis.difference(Basis.of(order.scenarios.values())):
+        return Refused(differs)
     started, began = _now(), time.perf_counter()
     ids = order.batch.runs
     scenarios = [scenario_of(order.scenarios[run.condition], run.seed) for run in ids]
     outcomes = ride_batch(scenarios, Pulse(scenarios[0].ticks, report))
     if any(outcome.ending.reason == "interrupted" for outcome in outcomes):
         # Those that ended before the others are the falls: a rate of them would be a false one.
-        return Done((), (), started, time.perf_counter() - began)
+        return _done((), (), started, time.perf_counter() - began)
     ended = [
         (Result(run, outcome.ending.reason, outcome.history.ticks), measure(outcome.history, one))
         for run, outcome, one in zip(ids, outcomes, scenarios, strict=True)
     ]
     results, metrics = zip(*ended, strict=True)
-    return Done(results, metrics, started, time.perf_counter() - began)
+    return _done(results, metrics, started, time.perf_counter() - began)
 
 
 def _keep(order: Keep, report: Report) -> Done:
@@ -138,21 +145,25 @@ def _keep(order: Keep, report: Report) -> Done:
     ending = run(build(order.scenario), order.path, force=True, interrupted=pulse)
     if ending.reason == "interrupted":
         order.path.unlink(missing_ok=True)
-        return Done((), (), started, 0.0)
+        return _done((), (), started, 0.0)
     record = open_run(order.path)
     metrics = measure(History.of_run(record), order.scenario)
     result = Result(order.run, ending.reason, record.ticks)
-    return Done((result,), (metrics,), started, time.perf_counter() - began)
+    return _done((result,), (metrics,), started, time.perf_counter() - began)
 
 
 def _try(order: Trial, report: Report) -> Answer:
     started, began = _now(), time.perf_counter()
     pulse = Pulse(order.scenarios[0].ticks * (1 + len(order.scenarios)), report)
-    # What he does wrong in either way is told by the ride itself, with the run that it is in.
-    with suppress(InputError):
-        if told := apart(order, pulse):
-            return Refused(told)
-    return Done((), (), started, time.perf_counter() - began)
+    if told := apart(order, pulse):
+        return Refused(told)
+    return _done((), (), started, time.perf_counter() - began)
+
+
+def _done(
+    results: tuple[Result, ...], metrics: tuple[Metrics, ...], started: str, seconds: float
+) -> Done:
+    return Done(results, metrics, started, seconds, Versions.gather())
 
 
 class Pulse:

@@ -31,16 +31,17 @@ def comparisons(
 
     Levels are those of the grid alone: a condition beside it may differ in more than its levels
     say. Where nothing is asked: the first level of each factor with each other, factor by factor
-    as long as there are no more than MOST. What is asked twice is made, and counted, once.
+    as long as there are no more than MOST, of the first factor the first MOST. What is asked twice,
+    in whichever order, is made and counted once: as it was asked first.
     """
     there = {one.name for one in conditions}
     conditions = [one for one in conditions if not one.beside]
     if asked:
-        once: dict[tuple[str, str], Comparison] = {}
+        once: dict[frozenset[str], Comparison] = {}
         for one in asked:
             by_name = isinstance(one, Named)
             for made in _named(one, there) if by_name else _made(one, factors, conditions):
-                once.setdefault((made.first, made.second), made)
+                once.setdefault(frozenset((made.first, made.second)), made)
         return tuple(once.values())
     found: list[Comparison] = []
     for factor in factors:
@@ -53,7 +54,7 @@ def comparisons(
         if found and len(found) + len(more) > MOST:
             break
         found += more
-    return tuple(found)
+    return tuple(found[:MOST])
 
 
 def _made(

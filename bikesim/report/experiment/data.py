@@ -99,7 +99,8 @@ class Data:
     def paired(self, comparison: Comparison, columns: Sequence[str]) -> NDArray[np.float64]:
         """(2, 1 + k, m): whether whole, and columns, of both over the m seeds that both have."""
         halves = (comparison.first, comparison.second)
-        seeds = [self.values(name, "seed") for name in halves]
+        # As whole numbers: above 2^53 neighbours are one as floats.
+        seeds = [self.column("seed")[self._rows(name)] for name in halves]
         _, *both = np.intersect1d(*seeds, assume_unique=True, return_indices=True)
         return np.array(
             [

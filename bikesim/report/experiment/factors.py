@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from bikesim.report.experiment.data import Data, Factor, shown
 from bikesim.report.experiment.logistic import CONSTANT, Logistic, logistic_regression
 
-_MOST_LEVELS = 8  # of a factor with a term for each level; above it, a number on its scale
+_MOST_LEVELS = 8  # of a factor with a term for each level; above it, one for its whole range
 
 
 class Fit(NamedTuple):
@@ -22,7 +22,10 @@ class Fit(NamedTuple):
 
 
 class Regression(NamedTuple):
-    """The logistic regression of falls on the factors, or the reason why there is none."""
+    """The logistic regression of falls on the factors, or the reason why there is none.
+
+    `reference`: factor and level that the terms of its other levels are held against.
+    """
 
     model: Logistic | None
     fit: Fit | None
@@ -32,7 +35,11 @@ class Regression(NamedTuple):
 
 
 def regression(data: Data) -> Regression:
-    """Main effects of all factors over the grid; each level against the first of its factor."""
+    """Main effects of all factors over the grid; each level against the first of its factor.
+
+    Of a number with many levels there is one term, linear in it: the log odds that its largest
+    level has more than its least.
+    """
     data = _of_grid(data)
     fell = data.table["fell"].to_numpy(np.float64) > 0
     factors = [factor for factor in data.factors if len(factor.levels) > 1]
@@ -47,7 +54,9 @@ def regression(data: Data) -> Regression:
     names, design, left_out = _independent(columns, len(fell))
     model = logistic_regression(design, fell, names)
     reference = tuple(
-        (factor.label, f"{shown(factor.levels[0])} {factor.unit}".rstrip()) for factor in factors
+        (factor.label, f"{shown(factor.levels[0])} {factor.unit}".rstrip())
+        for factor in factors
+        if not _is_slope(factor)
     )
     return Regression(model, _fit(data, model, design), reference, left_out)
 
@@ -61,13 +70,18 @@ def _of_grid(data: Data) -> Data:
 
 def _columns(data: Data, factor: Factor) -> list[tuple[str, NDArray[np.float64]]]:
     values = data.table[factor.name]
-    if factor.numeric and len(factor.levels) > _MOST_LEVELS:
-        scaled = values.to_numpy(np.float64)
-        return [(f"{factor.label}, per {factor.unit or 1}", scaled)]
+    if _is_slope(factor):
+        low, high = min(factor.levels), max(factor.levels)
+        name = f"{factor.label}, from {shown(low)} to {shown(high)} {factor.unit}".rstrip()
+        return [(name, (values.to_numpy(np.float64) - low) / (high - low))]
     return [
         (factor.at(level), np.array([v == level for v in values], float))
         for level in factor.levels[1:]
     ]
+
+
+def _is_slope(factor: Factor) -> bool:
+    return factor.numeric and len(factor.levels) > _MOST_LEVELS
 
 
 def _independent(

@@ -17,6 +17,9 @@ from bikesim.report.experiment.logistic import CONSTANT, Term
 from bikesim.report.experiment.panels import COLOURS, MARKERS, WIDTH, is_ratio, panels
 from bikesim.report.style import BLACK, BLUE, GREY, figure, label, styled
 
+MOST_ROWS = 100
+"""Differences that a figure shows: of thousands it would be too tall to be painted."""
+
 _WIDE = 10.0  # largest over smallest median of a metric above which its axis is logarithmic
 
 
@@ -62,7 +65,12 @@ def metric_figure(findings: Findings, layout: Layout, name: str) -> Figure:
 
 
 def contrasts_figure(contrasts: Sequence[Contrast], metric: str | None = None) -> Figure:
-    """The differences between pairs of conditions: of falls, or the effect on a metric."""
+    """The differences between pairs of conditions: of falls, or the effect on a metric.
+
+    Of more than MOST_ROWS the first, and it says so.
+    """
+    made = len(contrasts)
+    contrasts = contrasts[:MOST_ROWS]
     with styled():
         drawn = figure(WIDTH, 0.9 + 0.22 * len(contrasts))
         axes = drawn.subplots()
@@ -78,7 +86,8 @@ def contrasts_figure(contrasts: Sequence[Contrast], metric: str | None = None) -
             if metric is None
             else f"{words.plain(metric)}: effect $d_z$"
         )
-        label(axes, x=f"difference in {what}" if metric is None else what)
+        title = f"the first {MOST_ROWS} of {made}" if made > MOST_ROWS else ""
+        label(axes, x=f"difference in {what}" if metric is None else what, title=title)
     return drawn
 
 

@@ -17,7 +17,7 @@ from bikesim.report.experiment.rates import (
     paired_rates,
     wilson,
 )
-from bikesim.report.experiment.survival import Survival, kaplan_meier
+from bikesim.report.experiment.survival import Survival, kaplan_meier, ridden
 
 
 class Middle(NamedTuple):
@@ -87,9 +87,9 @@ def find(data: Data) -> Findings:
 
 def _of_condition(data: Data, condition: Condition) -> ConditionFindings:
     fell = data.values(condition.name, "fell") > 0
-    duration = data.values(condition.name, "duration")
+    until = ridden(*(data.values(condition.name, name) for name in ("duration", FALL_TIME)))
     whole = data.whole(condition.name)
-    survival = kaplan_meier(duration, fell)
+    survival = kaplan_meier(until, fell)
     metrics = tuple(
         _middle_fall(survival, len(fell))
         if name == FALL_TIME

@@ -14,10 +14,13 @@ CONSTANT = "constant"
 """The name of the term that all runs have."""
 
 _STEPS = 200
-_TOLERANCE = 1e-8
-_LARGEST_STEP = 3.0
+_TOLERANCE = 1e-8  # of the log odds of any run
+_LARGEST_STEP = 3.0  # the same
+# Of a coefficient's standard error.
+_FIRST_REACH = 0.5
 _FARTHEST = 100.0
 _LIMIT_ERROR = 1e-3
+_SLACK = 1e-12  # that a log likelihood loses to rounding
 
 
 class Term(NamedTuple):
@@ -40,7 +43,7 @@ class Logistic(NamedTuple):
 
     `separated` says that some combination of the terms tells falls from the others with no
     mistake, or with none but ties: then maximum likelihood has no answer, and Firth's penalised
-    likelihood is used.
+    likelihood is used. Where not `converged`, figures are those of the last step.
     """
 
     terms: tuple[Term, ...]
@@ -48,6 +51,7 @@ class Logistic(NamedTuple):
     falls: int
     method: str
     separated: bool
+    converged: bool
 
 
 def logistic_regression(
@@ -56,17 +60,24 @@ def logistic_regression(
     """log odds(fall) = X β; `design` X (m, k) with its column of ones, `fell` (m,), `names` (k,).
 
     Intervals and p of each coefficient are those of the profile likelihood, penalised by Firth's
-    log √det(XᵀWX) where the data are separated [Firth 1993; Heinze & Schemper 2002].
+    log √det(XᵀWX) where the data are separated [Firth 1993; Heinze & Schemper 2002]. In other
+    units of a column its coefficient is another by the same factor, and nothing else.
     """
-    rows, counts, falls = _grouped(design, fell)
-    split = separated(design, fell)
+    largest = np.abs(design).max(axis=0)
+    scale = np.where(largest > 0, largest, 1.0)
+    rows, counts, falls = _grouped(design / scale, fell)
+    split = separated(design / scale, fell)
     fit = _Likelihood(rows, counts, falls, penalised=split)
     best = fit.maximum()
-    terms = [_term(fit, best, i, name, confidence) for i, name in enumerate(names)]
+    found = [_term(fit, best, i, name, confidence) for i, name in enumerate(names)]
+    terms = [
+        term._replace(estimate=term.estimate / by, low=term.low / by, high=term.high / by)
+        for term, by in zip(found, scale.tolist(), strict=True)
+    ]
     corrected = holm([math.nan if term.name == CONSTANT else term.p for term in terms])
     terms = tuple(term._replace(p_holm=p) for term, p in zip(terms, corrected, strict=True))
     method = "Firth" if split else "maximum likelihood"
-    return Logistic(terms, len(fell), int(fell.sum()), method, split)
+    return Logistic(terms, len(fell), int(fell.sum()), method, split, fit.converged)
 
 
 def separated(design: Reals, fell: NDArray[np.bool_]) -> bool:
@@ -84,11 +95,15 @@ def separated(design: Reals, fell: NDArray[np.bool_]) -> bool:
 
 
 class _Likelihood:
-    """The log likelihood of grouped runs: rows (g, k) of X, and of each how many, how many fell."""
+    """The log likelihood of grouped runs: rows (g, k) of X, and of each how many, how many fell.
+
+    `converged` is False once a maximum was not found.
+    """
 
     def __init__(self, rows: Reals, counts: Reals, falls: Reals, *, penalised: bool) -> None:
         self._rows, self._counts, self._falls = rows, counts, falls
         self._penalised = penalised
+        self.converged = True
 
     def maximum(
         self, fixed: int | None = None, at: float = 0.0, *, near: Reals | None = None
@@ -100,21 +115,38 @@ class _Likelihood:
         beta = np.zeros(self._rows.shape[1]) if near is None else near.copy()
         free = np.ones(len(beta), bool)
         if fixed is not None:
-            beta[fixed], free[fixed] = at, False
+            free[fixed] = False
+            # The others with it, as the curvature says: else a column far from zero moves all odds.
+            information = self._information(self._rows @ beta)
+            others = _solved(information[np.ix_(free, free)], information[free, fixed])
+            beta[free] -= others * (at - beta[fixed])
+            beta[fixed] = at
         value = self._value(beta)
         for _ in range(_STEPS):
             step = np.zeros(len(beta))
             score, information = self._score(beta)
             step[free] = _solved(information[np.ix_(free, free)], score[free])
-            step *= min(1.0, _LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
+            step *= min(1.0, _LARGEST_STEP / max(self._size(step), 1e-300))
             new = self._value(beta + step)
-            while new < value - 1e-12 and np.abs(step).max() > _TOLERANCE:
+            while not new >= value - _SLACK and self._size(step) > _TOLERANCE:
                 step /= 2
                 new = self._value(beta + step)
             beta, value = beta + step, new
-            if np.abs(step).max() < _TOLERANCE:
+            if self._size(step) < _TOLERANCE:
                 break
+        else:
+            self.converged = False
         return beta, value
+
+    def standard_errors(self, beta: Reals) -> Reals:
+        """Of each coefficient, by the curvature of the likelihood at β; 1 where it has none."""
+        variance = np.diag(_solved(self._information(self._rows @ beta), np.eye(len(beta))))
+        with np.errstate(invalid="ignore"):
+            return np.where(np.isfinite(variance) & (variance > 0), np.sqrt(variance), 1.0)
+
+    def _size(self, step: Reals) -> float:
+        """The largest change of the log odds of any run: it is the same in all units."""
+        return float(np.abs(self._rows @ step).max())
 
     def _value(self, beta: Reals) -> float:
         odds = self._rows @ beta
@@ -148,14 +180,18 @@ def _term(
     drop = 0.5 * float(stats.chi2.ppf(confidence, 1))
     zero = max(fit.maximum(index, 0.0, near=start)[1] for start in (beta, None))
     p = float(stats.chi2.sf(max(0.0, 2 * (top - zero)), 1))
-    low, high = (_limit(fit, index, beta, top - drop, way) for way in (-1.0, 1.0))
-    estimate = float(beta[index]) if abs(beta[index]) > _TOLERANCE else 0.0
+    error = float(fit.standard_errors(beta)[index])
+    low, high = (_limit(fit, index, beta, top - drop, way * error) for way in (-1.0, 1.0))
+    estimate = float(beta[index]) if abs(beta[index]) > _TOLERANCE * error else 0.0
     return Term(name, estimate, low, high, p, p_holm=math.nan)
 
 
 def _limit(fit: _Likelihood, index: int, best: Reals, level: float, way: float) -> float:
-    """Where the profile likelihood of one coefficient falls to a level, on one side of the best."""
-    inside, above, near, reach = float(best[index]), math.inf, best, 0.25
+    """Where the profile likelihood of one coefficient falls to a level, on one side of the best.
+
+    `way` is the coefficient's standard error, negative for the lower side.
+    """
+    inside, above, near, reach = float(best[index]), math.inf, best, _FIRST_REACH
     # Step by step, each maximum sought from the one before it: far away the likelihood is flat.
     while True:
         outside = inside + way * reach
@@ -166,7 +202,7 @@ def _limit(fit: _Likelihood, index: int, best: Reals, level: float, way: float) 
         inside, above, near, reach = outside, below, beta, 1.5 * reach
         if reach > _FARTHEST:
             return way * math.inf
-    while abs(outside - inside) > _LIMIT_ERROR * max(1.0, abs(outside)):
+    while abs(outside - inside) > _LIMIT_ERROR * abs(way):
         # The secant, but never so near an end that it would creep there.
         part = above / (above - below) if math.isfinite(above) else 0.5
         value = inside + min(max(part, 0.1), 0.9) * (outside - inside)

@@ -12,8 +12,10 @@ from matplotlib.figure import Figure
 from bikesim.experiment.metric_table import BY_NAME, FALL_TIME, METRICS, OF_ALL_RUNS
 from bikesim.record.output import put_in_place, unwritable
 from bikesim.report.experiment import words
+from bikesim.report.experiment.comparisons import MOST
 from bikesim.report.experiment.data import Data, shown
 from bikesim.report.experiment.figures import (
+    MOST_ROWS,
     contrasts_figure,
     falls_figure,
     metric_figure,
@@ -77,7 +79,7 @@ def draw(data: Data, findings: Findings) -> Iterator[Drawn]:
         yield Drawn(
             "contrasts",
             "Differences in falls over the same seeds, with 95 % intervals; blue: p < 0.05 after "
-            "Holm's correction.",
+            "Holm's correction." + _left_out(len(findings.contrasts)),
             contrasts_figure(findings.contrasts),
         )
     model = findings.regression.model
@@ -88,6 +90,12 @@ def draw(data: Data, findings: Findings) -> Iterator[Drawn]:
             "intervals; blue: p < 0.05 after Holm's correction.",
             odds_figure(model.terms),
         )
+
+
+def _left_out(contrasts: int) -> str:
+    if contrasts <= MOST_ROWS:
+        return ""
+    return f" The first {MOST_ROWS}; the other {contrasts - MOST_ROWS} are in the table alone."
 
 
 def _which_median(name: str) -> str:
@@ -145,6 +153,7 @@ def page(data: Data, findings: Findings, drawn: tuple[Drawn, ...]) -> str:
         ),
         falls=falls,
         fewest=FEWEST,
+        most=MOST,
         few=len(data.conditions) <= _FEW,
         faults=sum(one.faults for one in findings.conditions),
         runs=len(data.table),

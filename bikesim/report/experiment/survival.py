@@ -36,10 +36,18 @@ class Survival(NamedTuple):
         return _first(self.time, self.share <= 1 - share + _ROUNDING)
 
 
+def ridden(duration: Reals, fall_time: Reals) -> Reals:
+    """Until when each was seen up [s]: his fall, or else the end of his ride.
+
+    A ride is over with the tick of the fall, which is one period after the time of the fall.
+    """
+    return np.where(np.isfinite(fall_time), fall_time, duration)
+
+
 def kaplan_meier(
     duration: Reals, fell: NDArray[np.bool_], confidence: float = CONFIDENCE
 ) -> Survival:
-    """The product-limit estimate of rides (m,) of a duration [s] that ended in a fall or not.
+    """The product-limit estimate of rides (m,) seen up so long [s], and then fallen or not.
 
     Band: Greenwood's variance of log(-log S), point by point [Kaplan & Meier 1958; Kalbfleisch &
     Prentice 2002, sec. 1.4]. Where S is 0 there is none.

@@ -25,6 +25,17 @@ def make(tmp_path: Path) -> Callable[[str], Study]:
 
 
 @pytest.fixture
+def shadowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, in which modules have the names of others' and cannot be imported."""
+    folder = tmp_path / "shadowed"
+    folder.mkdir()
+    for name in ("bikesim", "signal", "queue", "json"):
+        (folder / f"{name}.py").write_text("raise SystemExit('of the current folder')\n")
+    monkeypatch.chdir(folder)
+    return folder
+
+
+@pytest.fixture
 def small(make: Callable[[str], Study]) -> Study:
     """Four conditions, three seeds, 0.2 s each."""
     return make(SMALL)

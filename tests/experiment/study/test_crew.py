@@ -2,12 +2,14 @@
 
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from bikesim.experiment.study import crew as crews
 from bikesim.experiment.study.crew import Answered, Event, LocalCrew, Lost
 from bikesim.experiment.study.plan import Study
 from bikesim.experiment.study.work import Done, Order, Refused, order_of
@@ -100,3 +102,40 @@ def test_at_the_end_none_is_at_work(make):
         processes = [worker.process for worker in crew._workers]
         assert [process.poll() for process in processes] == [None, None]
     assert [process.poll() for process in processes] == [-signal.SIGKILL] * 2
+
+
+# Reads the order and says this; then it ends, or stays.
+WORKER = """
+import sys, time
+from multiprocessing.connection import Connection
+with Connection(int(sys.argv[1])) as pipe:
+    pipe.recv_bytes()
+    {says}
+"""
+
+
+@pytest.mark.parametrize(
+    ("says", "how"),
+    [
+        # A length, and less than that.
+        ("import os; os.write(pipe.fileno(), (1000).to_bytes(4, 'big') + b'half')", "status 0"),
+        ("pipe.send_bytes(b'nothing that was ever pickled'); time.sleep(60)", "signal SIGKILL"),
+    ],
+)
+def test_an_answer_that_is_not_whole_is_a_lost_worker(monkeypatch, small, says: str, how: str):
+    monkeypatch.setattr(crews, "_ENDING", 0.5)
+    command = [sys.executable, "-c", WORKER.format(says=says)]
+    monkeypatch.setattr(crews, "child_command", lambda module, file: [*command, file])
+    given = order(small)
+    with LocalCrew(1) as crew:
+        crew.give(given)
+        assert answer(crew) == Lost(given, how)
+        assert (crew.free, crew.busy) == (1, 0)
+
+
+def test_the_folder_that_it_is_called_in_is_not_where_a_worker_finds_modules(small, shadowed):
+    with LocalCrew(1) as crew:
+        crew.give(order(small))
+        event = answer(crew)
+    assert isinstance(event, Answered)
+    assert isinstance(event.answer, Done)

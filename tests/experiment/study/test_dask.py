@@ -1,5 +1,6 @@
 """The same experiment on a Dask cluster."""
 
+import os
 import time
 from pathlib import Path
 
@@ -87,6 +88,17 @@ def test_stopped_it_still_gives_what_was_done(make):
         assert isinstance(event.answer, Done)
         assert [one.run for one in event.answer.results] == [RunId(1, 1), RunId(1, 2)]
         assert crew.busy == 0
+
+
+def test_its_workers_find_no_modules_in_the_folder_that_it_is_called_in(small, shadowed):
+    with DaskCrew(workers=1) as crew:
+        crew.give(order_of(small, next(small.batches(set(), 512, 1))))
+        deadline = time.monotonic() + 60
+        while not (events := crew.wait(1.0)):
+            assert time.monotonic() < deadline
+    assert isinstance(events[0], Answered)
+    assert isinstance(events[0].answer, Done)
+    assert "PYTHONSAFEPATH" not in os.environ
 
 
 def wait_for_an_hour(crew: DaskCrew) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from bikesim.errors import InputError
 from bikesim.experiment.metrics import Metrics
-from bikesim.experiment.study import manifest
+from bikesim.experiment.study import manifest, named_files
 from bikesim.experiment.study.folder import open_folder
 from bikesim.experiment.study.plan import RunId, Study
 from bikesim.experiment.study.results import read_results
@@ -27,6 +27,7 @@ def done(*runs: tuple[int, int]) -> Done:
         tuple(Metrics(*[float(run[1])] * len(Metrics._fields)) for run in runs),
         "2026-01-01T00:00:00+00:00",
         1.0,
+        Versions.gather(),
     )
 
 
@@ -124,12 +125,11 @@ class TestOthers:
 
         bicycle = tmp_path / "mine.toml"
         bicycle.write_text(bicycles.to_toml(bicycles.load("benchmark")))
-        study = make("seeds = 1\nscenario.bicycle = 'mine.toml'")
-        begin(study, tmp_path / "results", (1, 1))
+        text = "seeds = 1\nscenario.bicycle = 'mine.toml'"
+        begin(make(text), tmp_path / "results", (1, 1))
         bicycle.write_text(bicycle.read_text() + "\n# and a remark")
-        assert f"another experiment: {bicycle} has changed; " in refusal(
-            study, tmp_path / "results"
-        )
+        told = f"another experiment: {bicycle} has changed; "
+        assert told in refusal(make(text), tmp_path / "results")
 
     def test_other_versions_are_refused_while_runs_are_missing(self, small, tmp_path, monkeypatch):
         begin(small, tmp_path, (1, 1))
@@ -162,18 +162,18 @@ class TestOthers:
     def test_what_a_riders_file_imports_may_not_change(self, make, tmp_path: Path):
         (tmp_path / "mine.py").write_text("from gains import GAIN\nclass Mine: ...\n")
         (tmp_path / "gains.py").write_text("GAIN = 1.0\n")
-        study = make("seeds = 1\nscenario.rider = 'mine.py:Mine'")
-        begin(study, tmp_path / "results", (1, 1))
+        text = "seeds = 1\nscenario.rider = 'mine.py:Mine'"
+        begin(make(text), tmp_path / "results", (1, 1))
         (tmp_path / "gains.py").write_text("GAIN = 2.0\n")
         told = f"another experiment: {tmp_path / 'gains.py'} has changed; "
-        assert told in refusal(study, tmp_path / "results")
+        assert told in refusal(make(text), tmp_path / "results")
 
     def test_nor_may_the_package_that_a_rider_comes_from(self, make, tmp_path, monkeypatch):
-        study = make("seeds = 1\nscenario.rider = 'yaml.loader:Loader'")
-        begin(study, tmp_path / "results", (1, 1))
-        monkeypatch.setattr(manifest, "package_version", lambda name: "PyYAML 0.1")
+        text = "seeds = 1\nscenario.rider = 'yaml.loader:Loader'"
+        begin(make(text), tmp_path / "results", (1, 1))
+        monkeypatch.setattr(named_files, "package_version", lambda name: "PyYAML 0.1")
         told = "another experiment: version of yaml has changed; "
-        assert told in refusal(study, tmp_path / "results")
+        assert told in refusal(make(text), tmp_path / "results")
         files = json.loads((tmp_path / "results" / "manifest.json").read_text())["files"]
         assert {"yaml/loader.py", "yaml/reader.py"} <= set(files)
 

@@ -37,6 +37,15 @@ class Shared(Slow):
         Shared.asked += 1
         return super().intend(steer, steer_rate, seen) + 1e-6 * (Shared.asked % 7)
 
+class Where(Honest):
+    def intend(self, steer, steer_rate, seen):
+        torque = super().intend(steer, steer_rate, seen)
+        return np.where(abs(torque) > 2.0, np.sign(torque) * 2.0, torque)
+
+class ManyOnly(Honest):
+    def intend(self, steer, steer_rate, seen):
+        return super().intend(steer, steer_rate, seen) + 0.0 * len(steer)
+
 class FewOnly(Honest):
     def intend(self, steer, steer_rate, seen):
         assert np.size(steer) == 1
@@ -59,7 +68,7 @@ def tried(study: Study) -> Done | Refused:
     return work(trial, lambda _: False)
 
 
-@pytest.mark.parametrize("name", ["Honest", "Slow"])
+@pytest.mark.parametrize("name", ["Honest", "Slow", "Where"])
 def test_one_who_does_the_same_passes(study, name: str):
     assert isinstance(tried(study(name)), Done)
 
@@ -84,7 +93,13 @@ def test_he_rides_with_figures_and_speeds_of_the_grid(study):
     assert rides == [(3.5, {"gain": 6.0}, 1.0), (3.5, {"gain": 8.0}, 1.0), (5.0, {"gain": 8.0}, 1)]
 
 
-def test_what_he_does_wrong_is_left_to_the_ride(study):
+def test_one_who_cannot_ride_alone_is_refused(study):
+    answer = tried(study("ManyOnly"))
+    assert isinstance(answer, Refused)
+    assert "riders.py:ManyOnly raised TypeError at 0.0000 s (riders.py, line " in answer.why
+
+
+def test_what_he_does_wrong_in_a_batch_is_left_to_the_ride(study):
     assert isinstance(tried(study("FewOnly")), Done)
 
 

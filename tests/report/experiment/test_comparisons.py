@@ -26,13 +26,17 @@ def test_what_is_asked_is_all_that_is_made(data: Data):
 
 
 def test_no_more_than_the_most_unasked():
-    """The first factor's are made however many they are; another's only if they all fit."""
+    """Of the first factor's as many as there may be; another's only if they all fit."""
     many, few = Factor("a", "a", "", tuple(range(30))), Factor("b", "b", "", tuple(range(3)))
     grid = [Condition(f"{i} {j}", (i, j)) for i in range(30) for j in range(3)]
     turned = [Condition(one.name, one.levels[::-1]) for one in grid]
-    assert len(comparisons((), (many, few), grid)) == 29 * 3 > MOST
-    assert len(comparisons((), (few, many), turned)) == 2 * 30
-    assert MOST < 2 * 30 + 29 * 3
+    made = comparisons((), (many, few), grid)
+    assert (len(made), made[0].name, MOST) == (40, "a 1 against 0, where b 0", 40)
+    assert len(comparisons((), (few, many), turned)) == 40 < 2 * 30
+    short = [one for one in turned if one.levels[1] < 10]
+    less = Factor("a", "a", "", tuple(range(10)))
+    made = comparisons((), (few, less), short)
+    assert (len(made), {one.name[0] for one in made}) == (2 * 10, {"b"})  # 27 more do not fit
 
 
 def test_a_condition_that_is_not_there_is_not_compared(data: Data):
@@ -71,3 +75,5 @@ def test_what_is_asked_twice_is_made_once(data: Data):
     first, second = data.comparisons[0].first, data.comparisons[0].second
     asked = [Asked("law", "paper", "off"), Named(second, first), Named(second, first)]
     assert comparisons(asked, data.factors, data.conditions) == data.comparisons[:6]
+    turned = [*asked, Named(first, second), Asked("law", "off", "paper")]
+    assert comparisons(turned, data.factors, data.conditions) == data.comparisons[:6]

@@ -1,4 +1,5 @@
 import dataclasses
+import io
 from itertools import pairwise
 
 import numpy as np
@@ -8,6 +9,7 @@ from matplotlib.axes import Axes
 
 from bikesim.report.experiment.data import Condition, Data, Factor
 from bikesim.report.experiment.figures import (
+    MOST_ROWS,
     contrasts_figure,
     falls_figure,
     metric_figure,
@@ -140,6 +142,16 @@ def test_contrasts_of_falls_and_of_a_metric(data: Data):
     assert drawn.axes[0].get_xlabel() == "difference in falls [percentage points]"
     effect = contrasts_figure(contrasts, "roll_rms")
     assert effect.axes[0].get_xlabel() == "roll RMS: effect $d_z$"
+
+
+def test_of_very_many_contrasts_the_first_are_drawn(data: Data):
+    """All of two thousand would be too tall to be painted."""
+    many = 100 * find(data).contrasts
+    drawn = contrasts_figure(many)
+    assert len(drawn.axes[0].get_yticklabels()) == MOST_ROWS
+    assert drawn.axes[0].get_title("left") == f"the first {MOST_ROWS} of 2000"
+    drawn.savefig(io.BytesIO(), format="png")
+    assert contrasts_figure(many[:MOST_ROWS]).axes[0].get_title("left") == ""
 
 
 def test_odds_without_the_constant_on_a_logarithmic_axis(data: Data):

@@ -4,11 +4,12 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+import statsmodels.api as sm
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
 from bikesim.report.experiment.comparisons import Asked, Named, comparisons
-from bikesim.report.experiment.data import Condition, Data
+from bikesim.report.experiment.data import Condition, Data, Factor
 from bikesim.report.experiment.findings import find
 
 
@@ -36,6 +37,15 @@ def test_a_median_of_falls_counts_those_who_did_not_fall(data: Data):
     fall_time = find(dataclasses.replace(data, table=table)).conditions[6].metrics[0]
     assert (fall_time.runs, math.isnan(fall_time.median)) == (12, True)
     assert fall_time.lower_quartile == pytest.approx(2.3)
+
+
+def test_a_fall_is_when_it_was_not_when_the_ride_was_over(data: Data):
+    """A ride lasts until the end of the tick of its fall, here 10 ms on."""
+    table = data.table.assign(duration=data.table["duration"] + 0.01)
+    found = find(dataclasses.replace(data, table=table)).conditions
+    assert found[6].survival.time == pytest.approx(2.0 + 0.1 * np.arange(1, 13))
+    assert found[6].metrics[0].median == pytest.approx(2.6)
+    assert found[0].survival.last == 20.01
 
 
 def test_the_interval_of_a_median_is_between_the_third_and_the_tenth_of_twelve(data: Data):
@@ -74,6 +84,17 @@ def test_pairs_go_by_seed_not_by_row(data: Data):
 def test_a_seed_that_one_condition_lacks_is_no_pair(data: Data):
     found = find(dataclasses.replace(data, table=data.table.iloc[1:]))
     assert sum(found.contrasts[0].falls[:4]) == 11
+
+
+def test_seeds_beyond_the_whole_numbers_that_floats_have_are_paired_too(data: Data):
+    """As of a clock in nanoseconds, one by one: above 2^60 only each 256th is a float."""
+    table = data.table.assign(seed=1_750_000_000_000_000_000 + data.table["seed"])
+    assert len(set(table["seed"].astype(float))) < len(set(table["seed"]))
+    for shown in (table, table.sample(frac=1.0, random_state=1)):
+        assert find(dataclasses.replace(data, table=shown)).contrasts == find(data).contrasts
+    lacking = dataclasses.replace(data, table=table.drop(index=[0, 13]))
+    without = dataclasses.replace(data, table=data.table.drop(index=[0, 13]))
+    assert repr(find(lacking).contrasts) == repr(find(without).contrasts)
 
 
 def test_p_is_corrected_for_all_tests_that_were_made(data: Data):
@@ -130,6 +151,47 @@ def test_a_contrast_by_name_is_paired_and_counted(data: Data):
     assert named.metrics[0].difference.mean == pytest.approx(0.5 * roll)
     tests = sum(not math.isnan(m.difference.p_wilcoxon) for one in grid for m in one.metrics)
     assert found.tests == len(grid) + tests + 1 + len(named.metrics)
+
+
+def ten_periods(data: Data, unit: float) -> Data:
+    """Falls by the loop period, 1 to 10 ms in a `unit` of so many a second, and by the law."""
+    random = np.random.default_rng(1)
+    periods = tuple((unit * np.arange(1, 11) * 1e-3).round(9).tolist())
+    factors = (Factor("period", "loop period", "s", periods), data.factors[0])
+    conditions = tuple(Condition(f"{p} {w}", (p, w)) for p in periods for w in ("paper", "off"))
+    rows = pd.concat([data.table.iloc[:60]] * len(conditions), ignore_index=True)
+    each = np.repeat(np.arange(len(conditions)), 60)
+    odds = 1000 * (np.repeat(np.arange(1, 11), 120) * 1e-3 - 0.0055) + (each % 2)
+    table = rows.assign(
+        condition=[conditions[i].name for i in each],
+        period=[conditions[i].levels[0] for i in each],
+        law=[conditions[i].levels[1] for i in each],
+        seed=np.tile(np.arange(60), len(conditions)),
+        fell=(random.random(len(each)) < 1 / (1 + np.exp(-odds))).astype(float),
+    )
+    return dataclasses.replace(
+        data, factors=factors, conditions=conditions, table=table, comparisons=()
+    )
+
+
+def test_of_a_number_with_many_levels_there_is_a_slope_over_its_range(data: Data):
+    """The same in all units, and that of statsmodels; the slope is against no level."""
+    made = ten_periods(data, 1.0)
+    found = find(made).regression
+    assert found.model is not None
+    slope, law = found.model.terms[1:]
+    assert slope.name == "loop period, from 0.001 to 0.01 s"
+    assert found.reference == (("law", "paper"),)
+    milliseconds = 1000 * made.table["period"].to_numpy(float)
+    design = np.column_stack([np.ones(1200), milliseconds, made.table["law"] == "off"])
+    other = sm.Logit(made.table["fell"].to_numpy(), design.astype(float)).fit(disp=0)
+    assert [slope.estimate / 9, law.estimate] == pytest.approx(other.params[1:], rel=1e-6)
+    assert slope.low < slope.estimate < slope.high < math.inf
+    for unit in (1e3, 1e-6):
+        again = find(ten_periods(data, unit)).regression.model
+        assert again is not None
+        for one, same in zip(found.model.terms, again.terms, strict=True):
+            assert one[1:] == pytest.approx(same[1:], rel=1e-6, nan_ok=True)
 
 
 def test_no_regression_where_nobody_fell(data: Data):

@@ -5,6 +5,7 @@ import pytest
 import statsmodels.api as sm
 from scipy import stats
 
+from bikesim.report.experiment import logistic
 from bikesim.report.experiment.logistic import logistic_regression, separated
 
 NAMES = ("constant", "group")
@@ -55,6 +56,49 @@ def test_at_the_limits_the_likelihood_has_fallen_by_what_it_may():
             offset=limit * design[:, 1],
         ).fit()  # fmt: skip
         assert 2 * (top - rest.llf) == pytest.approx(3.841, abs=0.05)
+
+
+def by_period(unit: float, offset: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Ten loop periods of 1 to 10 ms, in a unit of so many a second, 60 runs each."""
+    random = np.random.default_rng(1)
+    period = np.repeat(np.arange(1, 11) * 1e-3, 60)
+    fell = random.random(600) < 1 / (1 + np.exp(-1100 * (period - 0.0055)))
+    return np.column_stack([np.ones(600), unit * period + offset]), fell
+
+
+@pytest.mark.parametrize(("unit", "offset"), [(1.0, 0.0), (1e3, 0.0), (1e-6, 0.0), (1.0, 1.0)])
+def test_the_answer_does_not_depend_on_the_unit(unit: float, offset: float):
+    """The slope of statsmodels, in ms, and limits where the likelihood has fallen as it may."""
+    design, fell = by_period(1e3)
+    other = sm.Logit(fell.astype(float), design).fit(disp=0)
+    found = logistic_regression(*by_period(unit, offset), NAMES)
+    slope = found.terms[1]
+    assert found.converged
+    assert slope.estimate * unit / 1e3 == pytest.approx(other.params[1], rel=1e-6)
+    for limit in (slope.low, slope.high):
+        rest = sm.GLM(
+            fell.astype(float), design[:, :1], family=sm.families.Binomial(),
+            offset=limit * unit / 1e3 * design[:, 1],
+        ).fit()  # fmt: skip
+        assert 2 * (other.llf - rest.llf) == pytest.approx(3.841, abs=0.05)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e3])
+def test_nor_does_it_where_falls_are_separated(unit: float):
+    design, _ = by_period(1.0)
+    fell = design[:, 1] > 0.0055
+    one, other = (
+        logistic_regression(design * [1.0, by], fell, NAMES).terms[1] for by in (1.0, unit)
+    )
+    assert 0 < one.low < one.estimate < one.high < math.inf
+    assert np.array(other[1:4]) * unit == pytest.approx(one[1:4], rel=1e-6)
+
+
+def test_a_fit_that_does_not_converge_says_so(monkeypatch: pytest.MonkeyPatch):
+    design, fell = noisy()
+    assert logistic_regression(design, fell, ("a", "b", "c")).converged
+    monkeypatch.setattr(logistic, "_STEPS", 2)
+    assert not logistic_regression(design, fell, ("a", "b", "c")).converged
 
 
 @pytest.mark.parametrize(("counts", "falls"), [((20, 20), (0, 20)), ((25, 30), (0, 7))])

@@ -96,6 +96,32 @@ def test_the_fall_time_is_not_told_twice_nor_of_the_fallen_alone(text: str):
     assert "Median by Kaplan-Meier of all runs" in text
 
 
+def test_a_regression_that_did_not_converge_is_told(data: Data, text: str):
+    findings = find(data)
+    model = findings.regression.model
+    assert model is not None
+    assert "did not converge" not in text
+    off = findings.regression._replace(model=model._replace(converged=False))
+    made = page(data, findings._replace(regression=off), tuple(draw(data, findings)))
+    assert "The fit did not converge" in made
+
+
+def test_slopes_alone_are_against_no_level(data: Data, text: str):
+    assert "Against: law paper, roll cue on, speed 2.5 m/s." in text
+    findings = find(data)
+    none = findings._replace(regression=findings.regression._replace(reference=()))
+    assert "Against:" not in page(data, none, tuple(draw(data, findings)))
+
+
+def test_contrasts_that_no_figure_has_are_in_the_table(data: Data):
+    findings = find(data)
+    many = findings._replace(contrasts=6 * findings.contrasts)
+    made = page(data, many, tuple(draw(data, many)))
+    assert "The first 100; the other 20 are in the table alone." in made
+    table = made[made.index("<h3>Falls</h3>") :]
+    assert table[: table.index("</table>")].count('<td class="what">') == 120
+
+
 def test_a_condition_beside_the_grid_is_called_by_its_name(data: Data):
     """Also one that has a level of every factor, as a cell of the grid has."""
     cell = data.conditions[0]

@@ -28,6 +28,7 @@ interface = "virtual"
 channel = "CHANNEL"
 [bar]
 inertia = 0.2311
+delay = 0.002
 [drive]
 kind = "cia402"
 node = 5

@@ -1,0 +1,83 @@
+"""What is judged of a ride before anything is sent: the loop with the haptic cue in it."""
+
+from typing import Any
+
+import pytest
+
+from bikesim.bench.drives import make_drive
+from bikesim.bench.preflight import Preflight, check_margins, preflight, told
+from bikesim.bench.scenario import bench_scenario
+from bikesim.errors import InputError
+from bikesim.experiment.scenario import Scenario
+from bikesim.realtime import Granted
+
+from .lockstep import profile
+
+
+def ready(bar: dict | None = None, *, wheel: bool = False, **scenario: Any) -> Preflight:
+    more = {"wheel": {"radius": 0.34}, "limits": {"speed": 7.0}} if wheel else {}
+    bench = profile(bar={"inertia": 0.2311, "delay": 0.002, **(bar or {})}, **more)
+    return preflight(bench, bench_scenario(bench, Scenario(**scenario)), make_drive(bench.drive))
+
+
+@pytest.mark.parametrize(
+    "haptics",
+    [
+        {},
+        {"scale": 0.0},
+        {"scale": 0.5, "switches": [(1.0, 1.0), (2.0, 0.0)]},
+        {"delay": 0.01},
+        {"filter_cutoff": 500.0},
+        {"delay": 0.02, "scale": 0.2},
+        {"limit": 1.0},
+    ],
+    ids=str,
+)
+def test_a_cue_with_margin(haptics: dict):
+    check_margins(ready(speed=5.0, haptics=haptics), told=0)
+
+
+@pytest.mark.parametrize(
+    ("haptics", "why"),
+    [
+        ({"delay": 0.045}, "no margin at 5 m/s with 0.2311 kg m² and 47 ms of delay"),
+        ({"delay": 0.1}, "102 ms of delay, that of haptics included: at most 50 ms is judged"),
+        ({"delay": 2.0}, "2002 ms of delay"),
+        ({"filter_cutoff": 30.0, "filter_order": 4}, "2 ms of delay, haptics as in the scenario"),
+        ({"scale": 0.0, "delay": 0.045, "switches": [(9.0, 1.0)]}, "no margin at 5 m/s"),
+        ({"scale": -1.0}, "a scale of -1 reverses the torque"),
+        ({"scale": 3.0}, "a scale of 3 gives more torque than the law"),
+        ({"switches": [(5.0, -0.1)]}, "a scale of -0.1 reverses the torque"),
+    ],
+    ids=str,
+)
+def test_a_cue_without_is_to_be_wanted_twice(haptics: dict, why: str):
+    found = ready(speed=5.0, haptics=haptics)
+    for times in (0, 1):
+        with pytest.raises(InputError) as error:
+            check_margins(found, told=times)
+        assert why in str(error.value)
+        assert "--without-margin, given twice" in str(error.value)
+    check_margins(found, told=2)
+    (margin,) = (one for one in told(found, Granted(*([None] * len(Granted._fields))))
+                 if one.startswith("margin"))  # fmt: skip
+    assert why in margin
+
+
+def test_a_cue_that_the_period_cannot_carry_is_told_before_the_bus():
+    with pytest.raises(InputError, match=r"haptics\.delay = 0\.0001 s"):
+        ready(haptics={"delay": 1e-4})
+
+
+def test_with_a_speed_sensor_every_speed_counts():
+    """This bar has margin at 3.5, 5 and 7 m/s, and at 3 m/s and below it has none."""
+    light = {"inertia": 0.0427, "delay": 0.010, "coupling": 0.95}
+    for speed in (3.5, 5.0, 7.0):
+        check_margins(ready(light, speed=speed), told=0)
+    with pytest.raises(InputError, match="no margin at 3 m/s"):
+        check_margins(ready(light, wheel=True), told=0)
+    with pytest.raises(InputError, match="no margin at 3 m/s"):
+        check_margins(ready(light, speed_profile=[(0.0, 7.0), (5.0, 1.0)]), told=0)
+    standing = ready(wheel=True)
+    check_margins(standing, told=0)
+    assert min(one.speed for one in standing.margins) == 0.0
