@@ -88,7 +88,7 @@ class Bench:
                     host.kill()
                 return host.poll() is not None
 
-            with real_time(PRIORITY - 5):
+            with real_time(PRIORITY - 5, processor=0):
                 emulator.run(over)
                 out, err = host.communicate()
                 self._linger(emulator)
