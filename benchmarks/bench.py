@@ -188,7 +188,7 @@ def _kill(name: str, folder: Path) -> None:
         with (
             emulated_bus(settings) as bus,
             subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as host,
-            real_time(PRIORITY - 5, processor=0),
+            real_time(PRIORITY - 5),
         ):
             emulator = Emulator(bus, settings, scenario, watch=watch)
             killed = _killed(emulator, host)

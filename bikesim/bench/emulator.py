@@ -61,7 +61,7 @@ class Emulator:
 
         Below the host's: a real bench does not take the host's time either.
         """
-        with real_time(PRIORITY - 5, processor=0):
+        with real_time(PRIORITY - 5):
             self.run(stop)
 
     def run(self, stop: Callable[[], bool]) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Self
 from bikesim.bench.faults import Fault, Observation, Reaction
 from bikesim.errors import InputError
 from bikesim.model.real import Real
-from bikesim.realtime import PRIORITY, processors
+from bikesim.realtime import PRIORITY
 from bikesim.record.header import Ending
 from bikesim.record.writer import RunWriter
 
@@ -38,7 +38,6 @@ class ThreadedRecorder:
         self.trouble = ""
         self._done = False
         self._wake = threading.Event()
-        self._processors = processors()
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
 
     def __enter__(self) -> Self:
@@ -80,7 +79,7 @@ class ThreadedRecorder:
         return Fault(_ROW, f"recording: {self.trouble}", "a record", Reaction.RAMP)
 
     def _run(self) -> None:
-        _stand_back(self._processors)
+        _stand_back()
         try:
             if self._path is None:
                 self._write_until_done(None)
@@ -118,12 +117,11 @@ class ThreadedRecorder:
         return bool(rows or frames)
 
 
-def _stand_back(usable: set[int]) -> None:
-    """Behind the loop where both are under real-time scheduling, and not on its processor.
+def _stand_back() -> None:
+    """Behind the loop, where both are under real-time scheduling.
 
     Before all others all the same: while it holds the interpreter the loop waits for it.
     """
     with contextlib.suppress(OSError, AttributeError):
-        os.sched_setaffinity(0, usable - processors() or usable)
         if os.sched_getscheduler(0) == os.SCHED_FIFO:
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY - 1))

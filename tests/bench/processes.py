@@ -54,6 +54,9 @@ def written(name: str, folder: Path, bus: BusSettings | None = None, **bar: Any)
     return file
 
 
+_NO_TIME = ("is still enabled", "nobody answers", "at rest, before any torque")
+
+
 class Bench:
     """An emulated bench in this process, and hosts as processes beside it."""
 
@@ -88,7 +91,7 @@ class Bench:
                     host.kill()
                 return host.poll() is not None
 
-            with real_time(PRIORITY - 5, processor=0):
+            with real_time(PRIORITY - 5):
                 emulator.run(over)
                 out, err = host.communicate()
                 self._linger(emulator)
@@ -97,11 +100,11 @@ class Bench:
     def until_in_time(
         self, *arguments: str, do: Callable[[subprocess.Popen[str], float], object] | None = None
     ) -> subprocess.CompletedProcess[str]:
-        """Up to three times, where this machine gave it no time while its watchdog was proven."""
+        """Up to three times, where this machine gave it no time before it rode."""
         again = "--force" if arguments[0] == "run" else "--json"
         ended = self.with_host(*arguments, again, do=do)
         for _ in range(2):
-            if "is still enabled" not in ended.stdout + ended.stderr:
+            if not any(words in ended.stdout + ended.stderr for words in _NO_TIME):
                 break
             ended = self.with_host(*arguments, again, do=do)
         return ended

@@ -44,6 +44,7 @@ def test_nothing_comes(wire: Wire):
         assert list(until(BusLink(bus), time.monotonic() + 0.01)) == []
 
 
+@pytest.mark.xdist_group("in real time")
 def test_a_sensor_node_on_a_bus(wire: Wire):
     node, decoder = EmulatedSteerNode(), SteerDecoder()
     node.steer = 0.3
@@ -54,7 +55,9 @@ def test_a_sensor_node_on_a_bus(wire: Wire):
             if frame.id == 0x110
         ]
     good = [one for one in readings if isinstance(one, SteerReading)]
-    assert len(good) == len(readings) > 20
+    # Where this computer held the node up for just one lap of its counter, one looks repeated.
+    assert len(good) >= 0.98 * len(readings)
+    assert len(readings) > 20
     assert good[-1].steer == pytest.approx(0.3, abs=1e-4)
 
 

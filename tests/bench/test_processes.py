@@ -26,7 +26,7 @@ def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 
 # Processes that begin, and wait for each other.
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("in real time")]
 
 
 def uncommissioned(path: Path) -> Path:
@@ -35,11 +35,19 @@ def uncommissioned(path: Path) -> Path:
     return path
 
 
+def looked_at(path: Path) -> tuple[subprocess.CompletedProcess[str], dict[str, bool]]:
+    checked = Bench(path).until_in_time("check", str(path), "--pulse")
+    checks = json.loads(checked.stdout)["checks"] if checked.stdout else []
+    return checked, {one["what"]: one["good"] for one in checks}
+
+
 def test_checked(tmp_path: Path):
     path = uncommissioned(written("cia402-emulated", tmp_path))
-    checked = Bench(path).until_in_time("check", str(path), "--pulse")
-    found = {one["what"]: one["good"] for one in json.loads(checked.stdout)["checks"]}
-    assert found["commissioning pulse"]
+    checked, found = looked_at(path)
+    for _ in range(2):  # its short pulse has no patience with a machine that is busy elsewhere
+        if not found.get("commissioning pulse"):
+            checked, found = looked_at(path)
+    assert found.get("commissioning pulse"), checked.stdout + checked.stderr
     assert found["drive, at the end"]
     # Frames may be late here; all else must be well.
     late = ("lost", "longest pause", "its clock", "frames of 0x110")
