@@ -13,7 +13,7 @@ from ..view.live.screen import monitor
 from .processes import Bench, written
 
 # Processes that begin, and wait for each other.
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("in real time")]
+pytestmark = [pytest.mark.slow, pytest.mark.real_time]
 
 
 def displays_of(host: int) -> list[int]:

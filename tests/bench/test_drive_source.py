@@ -45,7 +45,7 @@ def test_a_profile_with_another_zero_is_off_by_it():
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("in real time")
+@pytest.mark.real_time
 def test_a_ride_over_a_bus(tmp_path: Path):
     """Host and bench are two processes, on udp_multicast; the drive is silent until it is asked."""
     bench = Bench(written("cia402-emulated", tmp_path, source="drive", drive_zero=ZERO))

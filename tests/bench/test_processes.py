@@ -26,7 +26,7 @@ def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 
 # Processes that begin, and wait for each other.
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("in real time")]
+pytestmark = [pytest.mark.slow, pytest.mark.real_time]
 
 
 def uncommissioned(path: Path) -> Path:

@@ -184,7 +184,7 @@ def test_it_can_be_closed_twice(adapters: Adapters):
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("in real time")
+@pytest.mark.real_time
 class TestRide:
     """Host, adapters and bench are three processes."""
 
