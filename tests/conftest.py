@@ -4,19 +4,22 @@ from pathlib import Path
 
 import pytest
 
+_FIXTURES = frozenset(("wire", "process"))
+
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that ride in real time go one after the other, where tests go on several processes.
 
-    They, and those on a bus of threads, may meet a moment in which a busy machine gives them no
-    time: they have three tries. A test that fails has failed three times.
+    They, those on a bus of threads and those that begin processes may meet a moment in which a busy
+    machine gives them no time: they have three tries. A test that fails has failed three times.
     """
     for item in items:
         rides = item.get_closest_marker("real_time") is not None
         if rides:
             item.add_marker(pytest.mark.xdist_group("real time"))
-        if rides or "wire" in getattr(item, "fixturenames", ()):
+        begins = item.get_closest_marker("processes") is not None
+        if rides or begins or not _FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
             item.add_marker(pytest.mark.flaky(reruns=2))
 
 

@@ -174,6 +174,7 @@ class TestRefused:
         assert "x: holds the results of another experiment: scenario.duration was 0.2, is" in told
 
 
+@pytest.mark.processes
 class TestProcess:
     """What only real processes can show."""
 
@@ -197,7 +198,7 @@ class TestProcess:
     def test_a_signal_ends_it_and_what_was_computed_stays(self, riding, tmp_path: Path):
         riding.send_signal(signal.SIGINT)
         out, err = riding.communicate(timeout=60)
-        assert riding.returncode == 130
+        assert riding.returncode in (130, -signal.SIGINT)
         done = rows(tmp_path / "runs/e")
         assert 0 < len(done) < 40
         last = err.splitlines()[-1]
@@ -228,7 +229,7 @@ class TestProcess:
             if begun.poll() is None:
                 begun.kill()
                 begun.communicate()
-        assert begun.returncode == 130
+        assert begun.returncode in (130, -signal.SIGINT)
         done = rows(tmp_path / "runs/e")
         assert 0 < len(done) < 40
         announced, ended = err.splitlines()

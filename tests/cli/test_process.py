@@ -190,7 +190,13 @@ def test_ctrl_c_where_nothing_can_be_finished(process):
     assert begun.poll() is None
     begun.send_signal(signal.SIGINT)
     out, err = begun.communicate(timeout=30)
-    assert (begun.returncode, out, err) == (130, "", "bikesim: interrupted\n")
+    assert (out, err) == ("", "bikesim: interrupted\n")
+    assert begun.returncode in INTERRUPTED
+
+
+# Where it meets an exec(), of a class that is being made say, Python ends by the signal itself;
+# a shell tells 130 of both.
+INTERRUPTED = (130, -signal.SIGINT)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name)
@@ -203,7 +209,8 @@ def test_a_signal_leaves_nothing_half_done(process, tmp_path: Path, number: int)
         time.sleep(0.02)
     begun.send_signal(number)
     _, err = begun.communicate(timeout=30)
-    assert (begun.returncode, err) == (130, "bikesim: interrupted\n")
+    assert err == "bikesim: interrupted\n"
+    assert begun.returncode in INTERRUPTED
     assert list(tmp_path.iterdir()) == []
 
 
