@@ -8,6 +8,7 @@ COUNTS = 15  # the counter goes 0 to 14
 TIME_UNIT = 1e-5  # s
 _WRAP = 65536
 _SHORT = 0.3  # s, less than half a wrap-around
+_DRIFT = 1e-3
 _ALIKE = 0.75  # frames; a wrap moves the counter by 4.6 of 15 (node) or 5.5 (wheel)
 
 
@@ -44,6 +45,8 @@ class Continuity:
         self._counter = -1
         self._ticks = 0  # unwrapped, in TIME_UNIT
         self._arrival = -math.inf
+        self._ahead = math.inf
+        """Of the host's clock [s]; frames that waited in a buffer make it no larger."""
 
     def follow(self, counter: int, ticks: int, arrival: float) -> Passage | Flaw:
         """For a frame's counter, its sample time [10 us] and when it came [s], host's clock."""
@@ -73,16 +76,25 @@ class Continuity:
         host's for which the counter has moved as far as it did.
 
         By the host's clock alone a frame that waited in a buffer would seem a wrap later than it
-        is, and the first one after a buffer that was full a wrap earlier, long past.
+        is, and the first one after a buffer that was full a wrap earlier, long past. The counter
+        alone would move a node that merely paused: none comes before it was sent, and none that
+        goes back is believed but by the host's clock.
         """
         waited = (arrival - self._arrival) / TIME_UNIT
         near = round((waited - passed) / _WRAP)
         for wraps in (near, near - 1, near + 1, near - 2, near + 2):
             found = passed + _WRAP * wraps
+            ahead = arrival - (self._ticks + found) * TIME_UNIT
+            if wraps != near and (found <= 0 or ahead < self._ahead - _SHORT):
+                continue
             off = found / self._step - steps
             if abs(off - COUNTS * round(off / COUNTS)) < _ALIKE:
                 return found
         return passed + _WRAP * near
 
     def _keep(self, counter: int, ticks: int, arrival: float) -> None:
+        ahead = arrival - ticks * TIME_UNIT
+        # Clocks drift apart: by a part in a thousand at most.
+        grown = self._ahead + _DRIFT * (arrival - self._arrival)
+        self._ahead = ahead if ahead < grown else grown
         self._counter, self._ticks, self._arrival = counter, ticks, arrival

@@ -35,6 +35,17 @@ def test_frames_that_are_missing_are_counted(gap: int):
     assert lost(frames([0, 1, 2 + gap])) == [0, 0, gap]
 
 
+@pytest.mark.parametrize("pause", [x * 1e-4 for x in range(11, 650, 3)])
+@pytest.mark.parametrize("ahead", [0.0, 3.217, -5000.0])
+def test_a_node_that_paused_goes_on(pause: float, ahead: float):
+    """It counts the frames that it sends: after a pause the next number, at a later time."""
+    times = [n * 1e-3 for n in range(50)]
+    times += [times[-1] + pause + n * 1e-3 for n in range(50)]
+    told = follow([(n % 15, t) for n, t in enumerate(times)], [t + ahead for t in times])
+    seen = [one.time for one in told if isinstance(one, Passage)]
+    assert seen == pytest.approx([round(t * 1e5) * 1e-5 for t in times])
+
+
 def test_a_frame_that_comes_again_is_repeated():
     assert frames([0, 1, 1, 2])[2] is Flaw.REPEATED
 
