@@ -21,7 +21,8 @@ run: $(READY)
 
 test: $(READY)
 	@bash scripts/apt.sh $(SCREEN) || echo "test: without them the tests of the live display fail" >&2
-	$(PY) -m pytest --numprocesses auto --maxprocesses 4 --dist loadgroup $(ARGS)
+	$(PY) -m pytest --numprocesses auto --maxprocesses 4 --dist loadgroup \
+		--no-loadscope-reorder $(ARGS)
 
 check: lint types
 

@@ -4,23 +4,25 @@ from pathlib import Path
 
 import pytest
 
-_FIXTURES = frozenset(("wire", "process"))
-
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests that ride in real time go one after the other, where tests go on several processes.
+    """Where tests go on several processes, those of a file stay together, with what they share.
 
-    They, those on a bus of threads and those that begin processes may meet a moment in which a busy
-    machine gives them no time: they have three tries. A test that fails has failed three times.
+    Those that ride in real time go one after the other. They may meet a moment in which a busy
+    machine gives them no time: they have three tries, and one that fails has failed three times. No
+    other test has more than one. What takes longest begins first.
     """
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
     for item in items:
-        rides = item.get_closest_marker("real_time") is not None
-        if rides:
-            item.add_marker(pytest.mark.xdist_group("real time"))
-        begins = item.get_closest_marker("processes") is not None
-        if rides or begins or not _FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
+        if real := _in_real_time(item):
             item.add_marker(pytest.mark.flaky(reruns=2))
+        item.add_marker(pytest.mark.xdist_group("real time" if real else str(item.path)))
+    items.sort(key=lambda item: (not _in_real_time(item), item.path not in slow))
+
+
+def _in_real_time(item: pytest.Item) -> bool:
+    return item.get_closest_marker("real_time") is not None
 
 
 @pytest.fixture(scope="session")

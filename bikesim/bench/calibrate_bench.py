@@ -12,8 +12,8 @@ from bikesim.bench.continuity import BadFrame
 from bikesim.bench.database import STEER_REPLY, STEER_STATE, message
 from bikesim.bench.drives import make_drive
 from bikesim.bench.link import BusLink, Link, until
+from bikesim.bench.parts import Parts, loop_port, on_the_bus
 from bikesim.bench.profile import BenchSettings
-from bikesim.bench.ride import Parts, loop_port, on_the_bus
 from bikesim.bench.sensor_node import SteerDecoder, SteerReading
 from bikesim.clock import RealTimeClock
 from bikesim.errors import InputError

@@ -12,10 +12,10 @@ from bikesim.bench.database import STEER_STATE, WHEEL_SPEED, cycle_time, message
 from bikesim.bench.drive import Drive
 from bikesim.bench.drives import make_drive
 from bikesim.bench.frame import from_message
+from bikesim.bench.parts import Parts, loop_port
 from bikesim.bench.preflight import checked_load
 from bikesim.bench.profile import BenchSettings
 from bikesim.bench.profile_file import change_profile, own_profile
-from bikesim.bench.ride import Parts, loop_port
 from bikesim.bench.sensor_node import SteerDecoder, SteerReading
 from bikesim.bench.wheel_node import WheelDecoder, WheelReading
 from bikesim.clock import RealTimeClock

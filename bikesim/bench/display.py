@@ -65,6 +65,12 @@ class Screen:
         self._count = count + 2
         _COUNT.pack_into(buffer, 0, count + 2)
 
+    def stand(self, words: str) -> None:
+        """There is nothing to see any more but a bicycle that stands upright, and these words."""
+        self.say(words)
+        self._count = 0
+        _COUNT.pack_into(self._buffer, 0, 0)
+
     def say(self, words: str) -> None:
         """What goes on, in a line; not from a tick."""
         _WORDS.pack_into(self._buffer, _WORDS_AT, words.encode()[: _WORDS.size])
@@ -115,6 +121,11 @@ class ScreenReader:
     def alive(self) -> bool:
         """Whether the process that is to write this screen runs."""
         return self._memory is not None and _runs(_owner(self._memory)[0])
+
+    @property
+    def standing(self) -> bool:
+        """Whether the bicycle stands: before a ride's first state, or when it fell."""
+        return self._memory is not None and _COUNT.unpack_from(_buffer(self._memory)) == (0,)
 
     @property
     def about(self) -> str:

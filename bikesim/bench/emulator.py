@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from bikesim.bench.asking import ASK
 from bikesim.bench.bus import close_bus, open_bus
 from bikesim.bench.bus_errors import bus_fails
 from bikesim.bench.database import STEER_COMMAND, message
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 QUANTUM = 0.001
 """Of the physics, and between two looks at what is due [s]."""
 
-_STALE = 0.1  # s, without a new picture the ride is over
+_STALE = 0.3  # s, without a new picture the ride is over; a host that hangs for less rides on
 _MOST_LATE_FRAMES = 12  # between two quanta, of those that came before; some twice as many as come
 _MOST_BEHIND = 0.05  # s; more than that is left out
 
@@ -54,7 +55,7 @@ class Emulator:
         # On a bus that echoes the devices' own frames come back too.
         self._wanted = make_drive(bench.drive).host_ids | {message(STEER_COMMAND).frame_id}
         self._shown = 0
-        self._shown_at = 0.0
+        self._shown_at = self._read_at = 0.0
 
     def run_prompt(self, stop: Callable[[], bool]) -> None:
         """As `run`, under real-time scheduling where it is permitted.
@@ -81,8 +82,8 @@ class Emulator:
 
     def _advance(self, passed: float, now: float) -> None:
         self._look(now)
-        if self.riding_since is not None:
-            self._mishaps.happen(now - self.riding_since)
+        since = self.riding_since
+        self._mishaps.happen(None if since is None else now - since)
         self.plant.advance()
         for device in self.plant.devices:
             self._send(device.advance(passed))
@@ -103,6 +104,9 @@ class Emulator:
         elif self.riding_since is not None and now - self._shown_at > _STALE:
             self.riding_since = None
             self.plant.show(None)
+        if self.riding_since is None and now - self._read_at > _STALE:
+            self._read_at = now
+            self.plant.ask(asked=self._screen.alive and ASK in self._screen.words)
 
     def _listen(self, until: float) -> None:
         """Takes what comes until then; when it is late, all the same some that are there already.
@@ -117,14 +121,14 @@ class Emulator:
             if came is None:
                 return
             frame = from_message(came) if came.arbitration_id in self._wanted else None
-            if frame is not None:
+            if frame is not None and self._mishaps.hears_host:
                 now = time.monotonic()
                 for device in self.plant.devices:
                     self._send(device.receive(frame, now))
 
     def _send(self, frames: Iterable[Frame]) -> None:
         for frame in frames:
-            for one in self._mishaps.on_the_wire(frame):
+            for one in self._mishaps.pass_to_host(frame):
                 self._bus.send(to_message(one))
 
 

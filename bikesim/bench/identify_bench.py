@@ -8,9 +8,9 @@ from bikesim.bench.guard import BenchGuard
 from bikesim.bench.identify import BarFigures
 from bikesim.bench.identify_excitation import MOST_RATE, Excitation, excite
 from bikesim.bench.identify_model import BarRecord
+from bikesim.bench.parts import Parts, Say, loop_port, on_the_bus
 from bikesim.bench.profile import BenchSettings
 from bikesim.bench.pulse import GROSSLY, send_pulse
-from bikesim.bench.ride import Parts, Say, loop_port, on_the_bus
 from bikesim.bench.stopping import Stopping
 from bikesim.clock import RealTimeClock
 from bikesim.model.haptic import BicycleState

@@ -55,6 +55,8 @@ class Onlooker:
             self._ride, self._count, self._state, self._changed = ride, 0, None, now
         if seen is not None and seen[0] != self._count:
             (self._count, self._state), self._changed = seen, now
+        elif seen is None and self._count and self._reader.standing:
+            self._count, self._state, self._changed = 0, None, now
         alive = self._reader.alive
         silence = now - self._changed
         phase = self._phase(silence, here=ride is not None, alive=alive)

@@ -5,6 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
+from bikesim.bench.asking import asking_torque
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.emulated.cia402_drive import EmulatedDrive
 from bikesim.bench.emulated.device import Device
@@ -41,6 +42,8 @@ class _Hands:
     def __init__(self, make: Callable[[], Rider]) -> None:
         self._make, self._rider = make, make()
         self.riding = False
+        self.asking: float | None = None
+        """Since when he asks for another ride with the bar [s]; None: he does not."""
 
     def rest(self) -> None:
         """The next ride begins as the first: he remembers nothing of this one."""
@@ -52,7 +55,9 @@ class _Hands:
         return self._rider.arms if self.riding else _OFF
 
     def torque(self, steer: float, steer_rate: float, seen: BicycleState) -> float:
-        return self._rider.torque(steer, steer_rate, seen) if self.riding else 0.0
+        if self.riding:
+            return self._rider.torque(steer, steer_rate, seen)
+        return 0.0 if self.asking is None else asking_torque(self.asking, steer, steer_rate)
 
 
 class Plant:
@@ -108,15 +113,26 @@ class Plant:
         """Of the drive on the bar, now [N m]."""
         return self.drive.torque * self._ratio
 
+    def at_drive(self, torque: float) -> float:
+        """A torque at the steer axis as one at the drive's shaft [N m]."""
+        return torque / self._ratio
+
     def show(self, bicycle: BicycleState | None) -> None:
         """To the rider's eyes; None: there is no ride, his hands are off, the bar is straight."""
         if bicycle is not None:
-            self._hands.riding = True
+            self._hands.riding, self._hands.asking = True, None
             self.bar.show(bicycle)
             return
         self._hands.rest()
         self.bar.data.qpos[0] = self.bar.data.qvel[0] = 0.0
         self.bar.show(self._rest)
+
+    def ask(self, *, asked: bool) -> None:
+        """Whether the rider, between two rides, is to ask for the next one; see `asking`."""
+        if not asked:
+            self._hands.asking = None
+        elif self._hands.asking is None and not self._hands.riding:
+            self._hands.asking = 0.0
 
     def _rehearse(self) -> None:
         """All that the first moment of a ride needs is made now: it must not take longer then."""
@@ -132,6 +148,8 @@ class Plant:
         self.largest_torque = max(self.largest_torque, abs(torque))
         self.bar.command(torque)
         self.bar.wait()
+        if self._hands.asking is not None:
+            self._hands.asking += self.bar.info.period
         self._follow()
 
     def _follow(self) -> None:

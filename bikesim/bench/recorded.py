@@ -13,9 +13,10 @@ from bikesim.bench.emulated.device import Device
 from bikesim.bench.emulated.motor import Motor
 from bikesim.bench.emulated.steer_node import EmulatedSteerNode
 from bikesim.bench.guard import CEILING
+from bikesim.bench.parts import Parts
 from bikesim.bench.preflight import Preflight
 from bikesim.bench.profile import BenchSettings
-from bikesim.bench.ride import Order, Parts, Ride
+from bikesim.bench.ride import Order, Ride
 from bikesim.bench.scenario import bench_scenario
 from bikesim.bench.simulated import SimulatedBench
 from bikesim.experiment.scenario import Scenario, StartSettings

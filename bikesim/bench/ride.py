@@ -3,28 +3,22 @@
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from bikesim.bench.arm import arm, listen
-from bikesim.bench.bus import BusPort, close_bus, filter_for, open_bus
-from bikesim.bench.display import Screen, screen_name
-from bikesim.bench.drive import Drive
+from bikesim.bench.display import Screen
 from bikesim.bench.drives import make_drive
 from bikesim.bench.guard import BenchGuard
 from bikesim.bench.monitors import Monitor
+from bikesim.bench.parts import Parts, Say, loop_port, on_the_bus
 from bikesim.bench.preflight import Preflight, check_margins, preflight, told
 from bikesim.bench.profile import BenchSettings
-from bikesim.bench.pulse import send_pulse
 from bikesim.bench.recorder import ThreadedRecorder
-from bikesim.bench.rig import BENCH_CHANNELS, BenchRig, Clock, Port
+from bikesim.bench.rig import BENCH_CHANNELS
 from bikesim.bench.scenario import header_text
-from bikesim.bench.senses import Bar, DriveBar, NodeBar
-from bikesim.bench.showing import showing_of
 from bikesim.bench.stopping import Stopping
-from bikesim.bench.wheel_course import Wheel, WheelCourse, WheelSilent
+from bikesim.bench.wheel_course import WheelCourse, WheelSilent
 from bikesim.clock import RealTimeClock
 from bikesim.errors import InputError
 from bikesim.experiment.course import ScenarioCourse
@@ -36,17 +30,9 @@ from bikesim.record.channels import TICK_CHANNELS
 from bikesim.record.header import Ending, RunHeader
 from bikesim.record.provenance import Provenance
 from bikesim.record.writer import RunWriter
-from bikesim.rig.base import RigInfo
-
-if TYPE_CHECKING:
-    import can
-
-Say = Callable[[str], object]
 
 # How long another thread may keep the interpreter from the loop [s]; Python's own is 5 ms.
 _SWITCH_INTERVAL = 5e-5
-
-_NO_DISPLAY = nullcontext()
 
 
 @dataclass(frozen=True)
@@ -67,50 +53,6 @@ class Order:
     frames: Path | None = None
 
 
-class Parts:
-    """The parts of a bench, on a port: what arms, measures and rides uses them."""
-
-    def __init__(self, bench: BenchSettings, drive: Drive, port: Port, clock: Clock) -> None:
-        self.bench, self.drive = bench, drive
-        self.bar = make_bar(bench, drive)
-        self.wheel = None if bench.wheel is None else Wheel(bench.wheel)
-        self.rig = BenchRig(
-            RigInfo(
-                "bench",
-                bench.period,
-                bench.bar.inertia,
-                math.radians(bench.bar.steer_stop_deg),
-                BENCH_CHANNELS,
-            ),
-            port,
-            self.bar,
-            drive,
-            clock=clock,
-            late=bench.thresholds.late,
-            others=() if self.wheel is None else (self.wheel,),
-        )
-
-    def arm(self) -> None:
-        """See `arm.arm`."""
-        arm(self.rig, self.bench.thresholds, self.drive.heartbeat_period)
-
-    def pulse(self) -> str:
-        """See `pulse.send_pulse`; a line for a person."""
-        bench = self.bench
-        found = send_pulse(
-            self.rig, bench.bar, bench.limits, bench.thresholds, self.drive.heartbeat_period
-        )
-        return (
-            f"pulse    inertia {found.inertia:.4g} kg m² (profile {bench.bar.inertia:.4g}), torque "
-            f"measured {100 * found.torque_ratio:.0f} % of that commanded"
-        )
-
-
-def make_bar(bench: BenchSettings, drive: Drive) -> Bar:
-    """Where steer angle and rate come from."""
-    return NodeBar() if bench.bar.source == "node" else DriveBar(drive, bench.bar.drive_zero)
-
-
 def check_order(order: Order) -> Preflight:
     """What can be known without a bus. Raises InputError."""
     bench = order.bench
@@ -126,21 +68,11 @@ def check_order(order: Order) -> Preflight:
     return ready
 
 
-def run_bench(
-    order: Order,
-    output: Path,
-    *,
-    force: bool = False,
-    say: Say = print,
-    display: AbstractContextManager[object] = _NO_DISPLAY,
+def ride_once(
+    order: Order, ready: Preflight, screen: Screen, output: Path, *, force: bool, say: Say
 ) -> Ending:
-    """Arm, ramp in, ride, ramp out, disable; recorded in `output`. Raises InputError.
-
-    `display` is entered when there is something to look at, before anything is on the bus.
-    """
-    ready = check_order(order)
+    """Arm, ramp in, ride, ramp out, disable; recorded in `output`. Raises InputError."""
     bench = order.bench
-    showing = showing_of(bench, order.scenario, ready.bicycle)
     header = RunHeader(
         scenario=header_text(bench, order.scenario),
         bicycle=ready.bicycle,
@@ -153,8 +85,6 @@ def run_bench(
     )
     drive = make_drive(bench.drive)
     with (
-        Screen(screen_name(bench.bus), showing.to_text()) as screen,
-        display,
         on_the_bus(bench, drive, say) as bus,
         RunWriter(
             output,
@@ -258,40 +188,6 @@ class Ride:
             haptics=self._haptics,
             interrupted=interrupted,
         )
-
-
-@contextmanager
-def on_the_bus(
-    bench: BenchSettings, drive: Drive, say: Say = print, *, prove: bool = True
-) -> Iterator:
-    """The profile's bus with the drive on it set up, disabled, its watchdog proven (see `Drive`).
-
-    Whoever is asked for is there and nobody else commands the drive. Raises InputError.
-    """
-    bar = make_bar(bench, drive)
-    wheel = () if bench.wheel is None else (Wheel(bench.wheel),)
-    bus = open_bus(bench.bus)
-    try:
-        listen(bus, drive, bar, wheel)
-        filter_for(bus, drive.ids)
-        for line in drive.set_up(bus, prove=prove):
-            say(f"drive    {line}")
-        filter_for(bus, None)
-        yield bus
-    finally:
-        close_bus(bus)
-
-
-def loop_port(
-    bus: "can.BusABC",
-    bench: BenchSettings,
-    drive: Drive,
-    log: "Callable[[can.Message, float | None], object] | None" = None,
-) -> BusPort:
-    """Takes what the loop needs of all that is on the bus, and a second master's frames."""
-    wheel = frozenset[int]() if bench.wheel is None else Wheel(bench.wheel).ids
-    ids = make_bar(bench, drive).ids | drive.ids | wheel | drive.host_ids
-    return BusPort(bus, ids, log, drive.host_ids if bench.bus.echoes else ())
 
 
 @contextmanager

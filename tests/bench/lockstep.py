@@ -10,10 +10,11 @@ from bikesim.bench.cia402_objects import set_up_writes
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.drives import make_drive
 from bikesim.bench.emulated.cia402_drive import EmulatedDrive
+from bikesim.bench.parts import Parts
 from bikesim.bench.plant import Plant
 from bikesim.bench.preflight import Preflight
 from bikesim.bench.profile import BenchSettings
-from bikesim.bench.ride import Order, Parts, Ride
+from bikesim.bench.ride import Order, Ride
 from bikesim.bench.rig import BENCH_CHANNELS
 from bikesim.bench.scenario import bench_scenario
 from bikesim.bench.simulated import SimulatedBench

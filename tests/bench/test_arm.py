@@ -10,10 +10,11 @@ import can
 import pytest
 
 from bikesim.bench.arm import listen
+from bikesim.bench.drives import make_drive
 from bikesim.bench.emulated.cia402_drive import EmulatedDrive
 from bikesim.bench.emulated.steer_node import EmulatedSteerNode
 from bikesim.bench.frame import Frame, to_message
-from bikesim.bench.ride import make_bar, make_drive
+from bikesim.bench.parts import make_bar
 from bikesim.bench.wheel_course import Wheel
 from bikesim.bench.wheel_node import WheelSettings
 from bikesim.errors import InputError

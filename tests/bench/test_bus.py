@@ -15,9 +15,9 @@ from bikesim.bench.bus import (
     open_bus,
     worst_bits,
 )
+from bikesim.bench.drives import make_drive
 from bikesim.bench.frame import Frame, to_message
 from bikesim.bench.preflight import checked_load
-from bikesim.bench.ride import make_drive
 from bikesim.errors import InputError
 
 from .conftest import Wire

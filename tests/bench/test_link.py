@@ -44,7 +44,6 @@ def test_nothing_comes(wire: Wire):
         assert list(until(BusLink(bus), time.monotonic() + 0.01)) == []
 
 
-@pytest.mark.real_time
 def test_a_sensor_node_on_a_bus(wire: Wire):
     node, decoder = EmulatedSteerNode(), SteerDecoder()
     node.steer = 0.3

@@ -92,3 +92,19 @@ def test_another_ride_says_anew_what_it_is(name: str):
 def test_a_ride_of_another_version_is_refused(name: str):
     with Screen(name, '{"version": 0}'), pytest.raises(InputError, match="of another version"):
         Onlooker(ScreenReader(name)).look(0.0)
+
+
+def test_who_fell_is_shown_upright_again_until_the_next_attempt(name: str):
+    with Screen(name, about()) as screen:
+        onlooker = Onlooker(ScreenReader(name))
+        screen.show(state())
+        assert onlooker.look(1.0).phase is Phase.RIDING
+        screen.stand("fell to the right")
+        sight = onlooker.look(2.0)
+        assert (sight.phase, sight.state, sight.words) == (Phase.READY, None, "fell to the right")
+        assert onlooker.look(60.0).phase is Phase.READY
+        screen.show(state())
+        assert onlooker.look(61.0).phase is Phase.RIDING
+        screen.stand("fell to the left")
+        assert onlooker.look(62.0).phase is Phase.READY
+    assert onlooker.look(63.0) == (Phase.OVER, None, "fell to the left", 1.0, False)

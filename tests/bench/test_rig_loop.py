@@ -7,7 +7,7 @@ import pytest
 
 from bikesim.bench.drives import make_drive
 from bikesim.bench.frame import Frame
-from bikesim.bench.ride import Parts
+from bikesim.bench.parts import Parts
 from bikesim.clock import RealTimeClock
 
 from .lockstep import DRIVES, profile

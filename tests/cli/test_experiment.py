@@ -174,7 +174,6 @@ class TestRefused:
         assert "x: holds the results of another experiment: scenario.duration was 0.2, is" in told
 
 
-@pytest.mark.processes
 class TestProcess:
     """What only real processes can show."""
 

@@ -17,7 +17,10 @@ from bikesim.cli.run import dated
 from bikesim.errors import InputError
 
 if TYPE_CHECKING:
+    from bikesim.bench.report import Timing
     from bikesim.record.reader import Run as Record
+
+_MOST_ATTEMPTS = 100
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,14 @@ class Run:
     """Replace a record that is there already."""
     no_frames: Flag = False
     """Do not keep the raw frames of the bus (else beside the record, .blf)."""
+    attempts: Annotated[
+        int,
+        arg(
+            "N",
+            "After a fall the bicycle stands upright again, and whoever holds the bar may ride up "
+            "to so many times in all, each with a record of its own (ride-2.h5…) (default: 1).",
+        ),
+    ] = 1
     pulse: Flag = False
     """A commissioning pulse first (at most 0.3 N m): hands off the bar until it is over."""
     uncommissioned: Flag = False
@@ -64,19 +75,20 @@ class Run:
     """Print the summary as JSON."""
 
     def __call__(self) -> int:
+        from bikesim.bench.attempts import attempt_file, run_bench
         from bikesim.bench.display_process import DisplayProcess
         from bikesim.bench.profile import load_bench
-        from bikesim.bench.ride import Order, run_bench
+        from bikesim.bench.ride import Order
         from bikesim.bench.scenario import bench_scenario
         from bikesim.record.reader import open_run
 
         bench = load_bench(self.bench)
         output = self.output or dated()
         frames = None if self.no_frames else output.with_suffix(".blf")
-        picture = output.with_name(f"{output.stem}-timing.png") if self.report else None
-        check_apart(output, *filter(None, (self.scenario, frames, picture)))
-        for path in filter(None, (output, frames, picture)):
-            check_output(path, force=self.force)
+        if not 1 <= self.attempts <= _MOST_ATTEMPTS:
+            raise InputError(f"--attempts {self.attempts}: must be 1 to {_MOST_ATTEMPTS}")
+        for attempt in range(1, self.attempts + 1):
+            self._check_files(attempt_file(output, attempt))
         order = Order(
             self.bench,
             bench,
@@ -88,8 +100,10 @@ class Run:
         )
         say = _to_stderr if self.json else _told
         display = DisplayProcess(self.bench, say) if self.display else nullcontext()
-        run_bench(order, output, force=self.force, say=say, display=display)
-        return self._end(open_run(output), picture)
+        records = run_bench(
+            order, output, attempts=self.attempts, force=self.force, say=say, display=display
+        )
+        return self._end([open_run(record) for record in records])
 
     def _as_virtual(self) -> VirtualRun:
         return VirtualRun(
@@ -102,31 +116,59 @@ class Run:
             set=self.set,
         )
 
-    def _end(self, record: "Record", picture: Path | None) -> int:
-        from bikesim.bench.report import timing_json, timing_report, timing_told
+    def _check_files(self, output: Path) -> None:
+        """What an attempt writes must not be there, nor what it reads."""
+        frames = None if self.no_frames else output.with_suffix(".blf")
+        picture = _picture_of(output) if self.report else None
+        check_apart(output, *filter(None, (self.scenario, frames, picture)))
+        for path in filter(None, (output, frames, picture)):
+            check_output(path, force=self.force)
+
+    def _end(self, records: "list[Record]") -> int:
+        for record in records:
+            if not record.ticks:
+                raise InputError(f"{record.path}: the ride ended before its first tick")
+        from bikesim.bench.report import timing_json, timing_report
         from bikesim.cli.telling import summary_json
         from bikesim.experiment.summary import summarise
 
-        if not record.ticks:
-            raise InputError(f"{record.path}: the ride ended before its first tick")
-        summary, timing = summarise(record), timing_report(record)
-        if picture is not None:
-            from bikesim.bench.report import timing_figure
-            from bikesim.report.style import save
-
-            save(timing_figure(record, timing), picture)
+        summaries = [summarise(record) for record in records]
+        timings = [timing_report(record) for record in records]
+        for record, summary, timing in zip(records, summaries, timings, strict=True):
+            picture = self._draw(record, timing) if self.report else None
+            if not self.json:
+                self._tell(record, summary.reason, timing, picture)
         if self.json:
-            print_json({**summary_json(summary), "timing": timing_json(timing)})
-        else:
-            print(f"ended    {summary.reason}, at {float(record.time[-1]):.2f} s")
-            for line in timing_told(timing, histogram=self.report):
-                print(line)
-            print(f"record   {record.path}")
-            if picture is not None:
-                print(f"figure   {picture}")
-        if summary.reason.startswith("fault"):
-            raise InputError(f"{summary.reason}; kept: {summary.record}")
+            said = [
+                {**summary_json(summary), "timing": timing_json(timing)}
+                for summary, timing in zip(summaries, timings, strict=True)
+            ]
+            print_json(said[0] if self.attempts == 1 else {"attempts": said})
+        if (last := summaries[-1]).reason.startswith("fault"):
+            raise InputError(f"{last.reason}; kept: {last.record}")
         return 0
+
+    def _draw(self, record: "Record", timing: "Timing") -> Path:
+        from bikesim.bench.report import timing_figure
+        from bikesim.report.style import save
+
+        picture = _picture_of(record.path)
+        save(timing_figure(record, timing), picture)
+        return picture
+
+    def _tell(self, record: "Record", reason: str, timing: "Timing", picture: Path | None) -> None:
+        from bikesim.bench.report import timing_told
+
+        print(f"ended    {reason}, at {float(record.time[-1]):.2f} s")
+        for line in timing_told(timing, histogram=self.report):
+            print(line)
+        print(f"record   {record.path}")
+        if picture is not None:
+            print(f"figure   {picture}")
+
+
+def _picture_of(record: Path) -> Path:
+    return record.with_name(f"{record.stem}-timing.png")
 
 
 def _told(line: str) -> None:

@@ -14,8 +14,6 @@ from bikesim.experiment.study.crew import Answered, Event, LocalCrew, Lost
 from bikesim.experiment.study.plan import Study
 from bikesim.experiment.study.work import Done, Order, Refused, order_of
 
-pytestmark = pytest.mark.processes
-
 FAR = 60.0  # [s] that nothing here takes
 
 

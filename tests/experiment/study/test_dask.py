@@ -19,8 +19,6 @@ from bikesim.experiment.study.work import Done, order_of
 
 from .crews import OwnHands
 
-pytestmark = pytest.mark.processes
-
 
 def results(study: Study, path: Path, crew: Crew, size: int) -> pd.DataFrame:
     with open_folder(path, study, force=False) as folder, crew:

@@ -14,8 +14,6 @@ from bikesim.experiment.study.plan import Study
 from bikesim.experiment.study.versions import Versions
 from bikesim.experiment.study.work import Done, Refused, order_of
 
-pytestmark = pytest.mark.processes
-
 NO_BIKESIM = "import sys; sys.modules['bikesim'] = None"
 OLD_BIKESIM = "import bikesim; bikesim.__version__ = '0.0.1'"
 FAR = 30.0  # [s] that nothing here takes
