@@ -1,16 +1,12 @@
 """What an emulated bench is made of: devices, and a bar in MuJoCo with a rider's hands on it."""
 
 from collections.abc import Callable
-from typing import Protocol
 
 import numpy as np
 
 from bikesim.bench.asking import asking_torque
-from bikesim.bench.cia402_settings import Cia402Settings
-from bikesim.bench.emulated.cia402_drive import EmulatedDrive
+from bikesim.bench.drives import emulated_drive
 from bikesim.bench.emulated.device import Device
-from bikesim.bench.emulated.motor import Motor
-from bikesim.bench.emulated.odrive import EmulatedODrive, ODriveConfiguration
 from bikesim.bench.emulated.steer_node import EmulatedSteerNode
 from bikesim.bench.emulated.wheel_node import EmulatedWheelNode
 from bikesim.bench.profile import BenchSettings
@@ -24,16 +20,6 @@ from bikesim.rider.building import make_rider
 from bikesim.rig.virtual import VirtualRig
 
 _OFF = Arms()
-
-
-class EmulatedShaft(Protocol):
-    """What the two kinds of emulated drive have in common: a shaft."""
-
-    angle: float
-    rate: float
-
-    @property
-    def torque(self) -> float: ...
 
 
 class _Hands:
@@ -88,7 +74,7 @@ class Plant:
         self._rehearse()
         self._ratio = bench.drive.gear * bench.drive.direction
         self._drive_zero = bench.bar.drive_zero
-        self.drive = _emulated_drive(bench)
+        self.drive = emulated_drive(bench.drive)
         self.node = EmulatedSteerNode()
         self.wheel = None if bench.wheel is None else EmulatedWheelNode(bench.wheel)
         if self.wheel is not None:
@@ -157,11 +143,3 @@ class Plant:
         self.node.steer, self.node.steer_rate = steer, rate
         self.drive.angle = (steer + self._drive_zero) * self._ratio
         self.drive.rate = rate * self._ratio
-
-
-def _emulated_drive(bench: BenchSettings) -> EmulatedDrive | EmulatedODrive:
-    """A case for each kind of drive."""
-    drive = bench.drive
-    if isinstance(drive, Cia402Settings):
-        return EmulatedDrive(drive.node, Motor.of_profile(drive))
-    return EmulatedODrive(drive.node, ODriveConfiguration.of_profile(drive))

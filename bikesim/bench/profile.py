@@ -10,9 +10,9 @@ from pydantic import Field, model_validator
 from bikesim.bench.bus import BusSettings
 from bikesim.bench.cia402_objects import doubly_written
 from bikesim.bench.cia402_settings import Cia402Settings
+from bikesim.bench.drives import DriveSettings
 from bikesim.bench.faults import Thresholds
 from bikesim.bench.guard import TorqueLimits
-from bikesim.bench.odrive_settings import ODriveSettings
 from bikesim.bench.wheel_node import WheelSettings
 from bikesim.data import data_path
 from bikesim.errors import unknown
@@ -63,7 +63,7 @@ class BenchSettings(Settings):
     )
     bus: BusSettings = Field(description="The CAN bus.")
     bar: BarSettings = Field(description="The handlebar.")
-    drive: Annotated[Cia402Settings | ODriveSettings, Field(discriminator="kind")] = Field(
+    drive: Annotated[DriveSettings, Field(discriminator="kind")] = Field(
         description="The motor and its drive."
     )
     wheel: WheelSettings | None = Field(
