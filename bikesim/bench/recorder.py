@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _TICKS = 10  # between two looks at what there is to write
 _PAUSE = 0.05  # s, at most; where there are no ticks
 _AT_ONCE = 50  # rows or frames, before the tick's thread is let in
+_MOST_WAITING = 5.0  # s of ticks, of which a disk that hangs takes none
 _ROW = 27
 
 
@@ -73,10 +74,16 @@ class ThreadedRecorder:
 
     def failed(self, o: Observation) -> Fault | None:
         """A monitor: nobody should ride on without a record."""
-        del o
-        if not self.trouble:
+        if self.trouble:
+            return Fault(_ROW, f"recording: {self.trouble}", "a record", Reaction.RAMP)
+        try:
+            waits = o.time - self._rows[0][0]
+        except IndexError:  # all is written, by now at least
             return None
-        return Fault(_ROW, f"recording: {self.trouble}", "a record", Reaction.RAMP)
+        if not waits > _MOST_WAITING:
+            return None
+        what = f"recording: {waits:.1f} s of ticks wait to be written"
+        return Fault(_ROW, what, f"{_MOST_WAITING:g} s", Reaction.RAMP)
 
     def _run(self) -> None:
         _stand_back()

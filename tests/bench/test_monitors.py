@@ -9,12 +9,7 @@ from hypothesis import strategies as st
 from bikesim.bench.faults import Fault, Observation, Reaction, Thresholds
 from bikesim.bench.monitors import AtOnce, monitors
 
-SOUND = Observation(
-    time=1.0, steer=0.1, steer_rate=0.0, fresh=True, sample_time=1.0, age=0.001,
-    bad_frames=0, frozen_frames=0, pot_ok=True, gyro_ok=True, vref_ok=True, estop_closed=True,
-    drive_age=0.001, drive_heartbeat_age=0.05, drive_trouble="", drive_error="",
-    torque_measured=0.0, torque_sent=0.0, late=0.0, bus_trouble="", second_master=False,
-)  # fmt: skip
+from .observed import SOUND
 
 TIMES = st.one_of(st.floats(0, 0.2), st.sampled_from((0.003, 0.005, 0.01, 0.02, 0.15, math.inf)))
 COUNTS = st.integers(0, 5)

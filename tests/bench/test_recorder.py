@@ -7,7 +7,7 @@ import can
 import pytest
 
 from bikesim import bicycles
-from bikesim.bench.faults import Reaction
+from bikesim.bench.faults import Observation, Reaction
 from bikesim.bench.recorder import ThreadedRecorder
 from bikesim.bench.rig import BENCH_CHANNELS
 from bikesim.errors import InputError
@@ -16,6 +16,8 @@ from bikesim.record.header import Ending, RunHeader
 from bikesim.record.provenance import Provenance
 from bikesim.record.reader import open_run
 from bikesim.record.writer import RunWriter
+
+from .observed import SOUND
 
 HEADER = RunHeader(
     scenario="", bicycle=bicycles.load("benchmark"), law="paper", handlebar_inertia=0.2,
@@ -32,6 +34,11 @@ def writer(path: Path, ticks: int = 3000) -> RunWriter:
         planned_ticks=ticks,
         header=HEADER,
     )
+
+
+def at(time: float) -> Observation:
+    """Of a monitor that looks at nothing but the time [s]."""
+    return SOUND._replace(time=time)
 
 
 def row(tick: int) -> tuple[float, ...]:
@@ -86,9 +93,24 @@ class FullDisk:
         self._record.finish(ending)
 
 
+class HangingDisk:
+    """A writer whose disk takes nothing until it goes on."""
+
+    def __init__(self, record: RunWriter, hangs: threading.Event, goes_on: threading.Event) -> None:
+        self._record, self._hangs, self._goes_on = record, hangs, goes_on
+
+    def append(self, one: tuple[float, ...]) -> None:
+        self._hangs.set()
+        self._goes_on.wait(30)
+        self._record.append(one)
+
+    def finish(self, ending: Ending) -> None:
+        self._record.finish(ending)
+
+
 def test_a_full_disk_is_a_fault_that_ramps_out_and_what_is_written_is_kept(tmp_path: Path):
     full: Any = FullDisk(record := writer(tmp_path / "run.h5"))
-    observation: Any = None
+    observation = at(0.0)
     with record:
         with ThreadedRecorder(full) as recorder:
             assert recorder.failed(observation) is None
@@ -105,6 +127,28 @@ def test_a_full_disk_is_a_fault_that_ramps_out_and_what_is_written_is_kept(tmp_p
         with pytest.raises(InputError, match="no space left"):
             recorder.finish(Ending("fault"))
     assert open_run(tmp_path / "run.h5").ticks == 100
+
+
+def test_a_disk_that_hangs_is_a_fault_and_nothing_is_lost(tmp_path: Path):
+    hangs, goes_on = threading.Event(), threading.Event()
+    with writer(tmp_path / "run.h5", 6000) as record:
+        disk: Any = HangingDisk(record, hangs, goes_on)
+        with ThreadedRecorder(disk) as recorder:
+            for tick in range(50):
+                recorder.append(row(tick))
+            assert hangs.wait(30)
+            for tick in range(50, 6000):
+                recorder.append(row(tick))
+            # The thread has taken the oldest; the next one is that which waits longest.
+            assert recorder.failed(at(5.0)) is None
+            fault = recorder.failed(at(5.3))
+            assert fault is not None
+            assert (fault.row, fault.reaction) == (27, Reaction.RAMP)
+            assert "s of ticks wait to be written; allowed 5 s" in str(fault)
+            goes_on.set()
+        assert recorder.failed(at(6.0)) is None
+        recorder.finish(Ending("end of run"))
+    assert open_run(tmp_path / "run.h5").ticks == 6000
 
 
 def test_frames_that_have_no_place_are_a_fault_too(tmp_path: Path):
