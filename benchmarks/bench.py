@@ -186,7 +186,7 @@ def _kill(name: str, folder: Path) -> None:
         command = _bikesim("run", path, "--duration", 60, "-o", folder / "killed.h5", "--force",
                            "--set", "start.roll_deg=1")  # fmt: skip
         with (
-            emulated_bus(settings) as bus,
+            emulated_bus(settings.bus) as bus,
             subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as host,
             real_time(PRIORITY - 5),
         ):

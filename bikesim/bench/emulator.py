@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from bikesim.bench.asking import ASK
-from bikesim.bench.bus import close_bus, open_bus
+from bikesim.bench.bus import BusSettings, close_bus, open_bus
 from bikesim.bench.bus_errors import bus_fails
 from bikesim.bench.database import STEER_COMMAND, message
 from bikesim.bench.display import ScreenReader, screen_name
@@ -133,9 +133,9 @@ class Emulator:
 
 
 @contextlib.contextmanager
-def emulated_bus(bench: BenchSettings) -> "Iterator[can.BusABC]":
-    """The profile's bus as the devices have it. Raises InputError if there is none, or it fails."""
-    bus = open_bus(bench.bus)
+def emulated_bus(settings: BusSettings) -> "Iterator[can.BusABC]":
+    """The bus as the devices have it. Raises InputError if there is none, or it fails."""
+    bus = open_bus(settings)
     try:
         with bus_fails():
             yield bus

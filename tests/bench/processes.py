@@ -23,27 +23,37 @@ from bikesim.realtime import PRIORITY, real_time
 WATCHDOG = 0.15  # s
 
 
-def written(name: str, folder: Path, bus: BusSettings | None = None, **bar: Any) -> Path:
-    """A profile that ships, on a port of this process's own or another bus, another bar."""
+def written(
+    name: str,
+    folder: Path,
+    bus: BusSettings | None = None,
+    *,
+    thresholds: dict[str, Any] | None = None,
+    limits: dict[str, Any] | None = None,
+    watchdog: float = WATCHDOG,
+    **bar: Any,
+) -> Path:
+    """A profile that ships, on a port of this process's own or another bus, with other figures."""
     settings = load_bench(name)
     port = {"port": 40_000 + os.getpid() % 20_000}
     bus = bus or settings.bus.model_copy(update={"arguments": port})
     # What is asked here is what happens, not how soon, on a machine that others use too.
-    thresholds = settings.thresholds.model_copy(
+    patient = settings.thresholds.model_copy(
         update={
             "hold_age": 0.05, "ramp_age": 0.2, "zero_age": 0.4, "drive_age": 0.4,
             "drive_heartbeats": 20.0, "follow_time": 0.4, "slip_time": 0.4, "late_most": WATCHDOG,
             "late": 0.1, "skipped_share": 0.9, "late_ticks": 400,
-            "bad_frames": 10, "frozen_frames": 10,
+            "bad_frames": 10, "frozen_frames": 10, **(thresholds or {}),
         }
     )  # fmt: skip
-    watchdog = "watchdog_timeout" if settings.drive.kind == "odrive" else "heartbeat_timeout"
-    drive = settings.drive.model_copy(update={watchdog: WATCHDOG})
+    timeout = "watchdog_timeout" if settings.drive.kind == "odrive" else "heartbeat_timeout"
+    drive = settings.drive.model_copy(update={timeout: watchdog})
     changed = settings.model_copy(
         update={
             "bus": bus,
             "bar": settings.bar.model_copy(update=bar),
-            "thresholds": thresholds,
+            "thresholds": patient,
+            "limits": settings.limits.model_copy(update=limits or {}),
             "drive": drive,
             "wheel": None,
         }
@@ -54,11 +64,14 @@ def written(name: str, folder: Path, bus: BusSettings | None = None, **bar: Any)
     return file
 
 
-_NO_TIME = ("is still enabled", "nobody answers", "at rest, before any torque")
+NO_TIME = ("is still enabled", "nobody answers", "at rest, before any torque")
 
 
 class Bench:
     """An emulated bench in this process, and hosts as processes beside it."""
+
+    scenario = Scenario()
+    """Of it the rider."""
 
     def __init__(self, path: Path, *mishaps: Mishap, bus: BusSettings | None = None) -> None:
         """`bus`: as the bench has it; default: as its host."""
@@ -104,19 +117,19 @@ class Bench:
         again = "--force" if arguments[0] == "run" else "--json"
         ended = self.with_host(*arguments, again, do=do)
         for _ in range(2):
-            if not any(words in ended.stdout + ended.stderr for words in _NO_TIME):
+            if not any(words in ended.stdout + ended.stderr for words in NO_TIME):
                 break
             ended = self.with_host(*arguments, again, do=do)
         return ended
 
-    def _linger(self, emulator: Emulator) -> None:
-        end = time.monotonic() + 0.2
+    def _linger(self, emulator: Emulator, duration: float = 0.2) -> None:
+        end = time.monotonic() + duration
         emulator.run(lambda: time.monotonic() > end)
 
     @contextmanager
     def _emulated(self) -> Iterator[Emulator]:
-        scenario = bench_scenario(self.settings, Scenario())
-        with emulated_bus(self.settings.model_copy(update={"bus": self.bus})) as bus:
+        scenario = bench_scenario(self.settings, self.scenario)
+        with emulated_bus(self.bus) as bus:
             self.emulator = Emulator(bus, self.settings, scenario, self.mishaps, self._watch)
             yield self.emulator
 

@@ -10,7 +10,7 @@ import pytest
 import tomli_w
 from can.interfaces.virtual import VirtualBus
 
-from bikesim.bench import calibrate_bench, check, ride
+from bikesim.bench import calibrate_bench, check, parts
 from bikesim.bench.bus import filter_for
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.cia402_watchdog import prove_watchdog
@@ -61,7 +61,7 @@ class Desk:
         monkeypatch.setattr(threading, "excepthook", self.tracebacks.append)
 
     def command(self, broken: str, drive: dict, *arguments: str) -> int:
-        for module in (ride, check, calibrate_bench):
+        for module in (parts, check, calibrate_bench):
             self._patch.setattr(module, "open_bus", lambda _: Broken(self._wire.name, broken))
         tables = {
             "bus": {"interface": "virtual", "channel": self._wire.name},
@@ -152,7 +152,7 @@ def test_an_emulated_bench_whose_bus_fails_says_so_in_a_line():
     bench = profile(bus={"interface": "virtual", "channel": "emulated bus that fails"})
 
     def sent_after_the_end() -> None:
-        with emulated_bus(bench) as bus:
+        with emulated_bus(bench.bus) as bus:
             bus.shutdown()
             bus.send(can.Message(arbitration_id=0x110, is_extended_id=False))
 

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import can
 import pytest
 
 GOOD = """
@@ -169,3 +170,18 @@ def test_a_mishap_that_is_none(refusal):
     assert "mishaps m.toml: mishaps.kind = 'earthquake': must be" in refusal(
         "bench", "emulate", "cia402-emulated", "--mishaps", "m.toml"
     )
+
+
+def test_an_emulated_bench_has_its_own_end_of_the_bus(cli, bench):
+    """As on a line of an SLCAN adapter, of which each side has one."""
+    with (
+        can.Bus(interface="virtual", channel="its end") as its_end,
+        can.Bus(interface="virtual", channel="nobody is here") as the_hosts,
+    ):
+        said = cli("bench", "emulate", bench(), "--channel", "its end", "--duration", "0.2")
+        assert (said.status, said.err) == (0, "")
+        assert "on bus virtual its end, " in said.out
+        came = its_end.recv(0)
+        assert came is not None
+        assert came.arbitration_id == 0x110
+        assert the_hosts.recv(0) is None

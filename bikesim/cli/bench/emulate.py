@@ -34,6 +34,10 @@ class Emulate:
     mishaps: Annotated[
         Path | None, arg("FILE.toml", "What goes wrong, and when: see docs/bench.md.")
     ] = None
+    channel: Annotated[
+        str | None,
+        arg("CHANNEL", "The bench's end of the bus (slcan: its own tty), where not as the host's."),
+    ] = None
     duration: Annotated[float | None, arg("S", "For so long (default: until Ctrl-C).")] = None
 
     def __call__(self) -> int:
@@ -53,16 +57,32 @@ class Emulate:
             set=self.set,
         )
         scenario = bench_scenario(bench, scenario_from(virtual))
-        end = None if self.duration is None else time.monotonic() + self.duration
         watch = Watch(1, 1.0, show=False)
-        with emulated_bus(bench) as bus, watch.watching():
+        end_of_bus = bench.bus
+        if self.channel is not None:
+            end_of_bus = end_of_bus.model_copy(update={"channel": self.channel})
+        with emulated_bus(end_of_bus) as bus, watch.watching():
             emulator = Emulator(bus, bench, scenario, mishaps)
             print(f"{bench.description or self.bench}", flush=True)
-            print(f"on {bench.bus}, rider {scenario.rider.name}; Ctrl-C ends it", flush=True)
-            emulator.run_prompt(lambda: watch() or (end is not None and time.monotonic() > end))
+            print(f"on {end_of_bus}, rider {scenario.rider.name}; Ctrl-C ends it", flush=True)
+            over = _Over(self.duration)
+            emulator.run_prompt(lambda: watch() or over())
         print(
             f"largest torque {emulator.plant.largest_torque:.3f} N m; "
             f"at most {1e3 * emulator.longest:.1f} ms behind the time",
             flush=True,
         )
         return 0
+
+
+class _Over:
+    """Whether so many seconds are over since it was asked first."""
+
+    def __init__(self, seconds: float | None) -> None:
+        self._seconds = seconds
+        self._began: float | None = None
+
+    def __call__(self) -> bool:
+        now = time.monotonic()
+        self._began = now if self._began is None else self._began
+        return self._seconds is not None and now - self._began > self._seconds
