@@ -84,3 +84,14 @@ def record(ridden: Path, tmp_path: Path) -> Path:
     copy = tmp_path / "run.h5"
     copy.write_bytes(ridden.read_bytes())
     return copy
+
+
+@pytest.fixture
+def file(tmp_path: Path):
+    """Writes a file into the test's folder; gives its name there."""
+
+    def write(text: str, name: str = "e.toml") -> str:
+        (tmp_path / name).write_text(text)
+        return name
+
+    return write
