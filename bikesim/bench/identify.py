@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bikesim.bench.identify_fit import ALL, LEAST, Fit
-from bikesim.bench.identify_model import BarRecord, Guess, Segments
+from bikesim.bench.identify_fit import ALL, LEAST, MOST, Fit, fit
+from bikesim.bench.identify_model import BarRecord, Guess, Reals, Segments
 from bikesim.bench.identify_start import first_guess
 from bikesim.errors import InputError
 
@@ -74,7 +74,8 @@ class BarFigures:
 
 def identify_bar(records: Sequence[BarRecord], *, confidence: float = 0.95) -> BarFigures:
     """The figures of the bar that all `records` are of. Raises InputError for records of which
-    none can be had: a bar that did not move, a fit that is none.
+    none can be had: a bar that did not move, a fit that is none, that does not converge, or that
+    ends where the search ends.
     """
     segments = [Segments(record) for record in records]
     moved = max(float(np.ptp(record.steer)) for record in records)
@@ -83,10 +84,9 @@ def identify_bar(records: Sequence[BarRecord], *, confidence: float = 0.95) -> B
             f"the bar moved by {np.degrees(moved):.2f} deg only: is it held, has the drive no "
             "power, or is its friction above the excitation?"
         )
-    fit = Fit(segments, with_ratio=len({record.added_inertia for record in records}) > 1)
-    fit.solve(first_guess(segments))
-    step = float(np.median(segments[0].steps))
-    return _figures(fit, confidence, step)
+    several = len({record.added_inertia for record in records}) > 1
+    found = fit(segments, first_guess(segments), with_ratio=several)
+    return _figures(found, confidence, float(np.median(segments[0].steps)))
 
 
 def _figures(fit: Fit, confidence: float, step: float) -> BarFigures:
@@ -94,7 +94,7 @@ def _figures(fit: Fit, confidence: float, step: float) -> BarFigures:
 
     freedom = max(fit.pieces - len(fit.free), 1)
     # The larger of both: with few pieces the robust one may by chance be small.
-    variance = np.maximum(*(np.diag(one) for one in fit.covariances()))
+    variance = np.maximum(*(np.diag(one) for one in fit.covariances))
     half = np.zeros(ALL)
     half[fit.free] = np.sqrt(variance) * t.ppf(0.5 + 0.5 * confidence, freedom)
     if not np.isfinite(half).all() or half[0] > 0.5 * fit.guess[0]:
@@ -102,6 +102,7 @@ def _figures(fit: Fit, confidence: float, step: float) -> BarFigures:
             f"no inertia can be told from this: {fit.guess[0]:.3g} ± {half[0]:.2g} kg m²; "
             "a longer or stronger excitation, and hands off the bar"
         )
+    _refuse_ends(fit.guess, half)
     half[:3] += _RELATIVE_FLOOR * fit.guess[:3]
     half[3] += _DELAY_FLOOR * step
     figures = {
@@ -125,3 +126,18 @@ def _figures(fit: Fit, confidence: float, step: float) -> BarFigures:
         float(fit.sizes[1]),
         confidence,
     )
+
+
+def _refuse_ends(guess: Reals, half: Reals) -> None:
+    """An interval that reaches the end of what was looked for is no answer. Friction and delay may
+    be none, and of the moment that friction takes to turn around nothing is told.
+    """
+    ends = zip(Guess._fields, _UNITS, guess, half, LEAST, MOST, strict=True)
+    for name, unit, value, by, least, most in ends:
+        below = least != 0.0 and value - by <= least
+        if name != "sticking_time" and (below or value + by >= most):
+            raise InputError(
+                f"the {name.replace('_', ' ')} is not to be found between {least:g} and {most:g} "
+                f"{unit}: the fit ends at {value:.3g} ± {by:.2g}; are bench, profile and record "
+                "what they should be?"
+            )

@@ -1,11 +1,20 @@
-"""The fit of a bar's figures: least output error, the pieces' beginnings eliminated."""
+"""The fit of a bar's figures: least output error, by scipy's trust-region least squares.
 
-from collections.abc import Iterator
+Each piece of a record begins at an angle and rate of its own. They are eliminated by variable
+projection (G. H. Golub and V. Pereyra, SIAM J. Numer. Anal. 10, 1973), with the derivative of
+L. Kaufman, BIT 15, 1975. MuJoCo's system-identification toolbox is not used: its Jacobian is dense,
+with all the beginnings as unknowns, its intervals take the errors of all samples for independent,
+and it needs packages that bikesim does not.
+"""
+
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bikesim.bench.identify_model import Guess, Reals, Segments
+from bikesim.bench.identify_pieces import Pieces, Sought, followed, settled
+from bikesim.errors import InputError
 
 ALL = len(Guess._fields)
 
@@ -16,141 +25,110 @@ LEAST = np.array([1e-4, 0.0, 0.0, 0.0, -10.0, -10.0, 0.0, 0.05])
 MOST = np.array([100.0, 10.0, 100.0, MOST_DELAY, 10.0, 10.0, 0.1, 20.0])
 """Between which each figure of a `Guess` is sought."""
 
-_STEPS = np.array([1e-4, 1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-4, 1e-4])  # of the derivatives
-_STATE_STEP = 1e-4  # rad, rad/s
+MOST_EVALUATIONS = 100
+"""Of the model in a round; a fit that needs more does not converge."""
 
-# Angle and rate at the beginning of each piece of a record.
-Start = tuple[Reals, Reals]
+_COST_TOLERANCE, _STEP_TOLERANCE = 1e-6, 1e-5  # relative
+# Rounds are made until the figures move by less than this, squared, in standard errors.
+_ROUNDS, _MOVED = 20, 0.01
+_FIRST_SIZES, _LEAST_SIZE = (1e-3, 1e-2), 1e-9  # rad, rad/s
 
 
-class _Linear(NamedTuple):
-    """The problem near a guess, without the states: gradient (p,), Hessian (p, p), the pieces'
-    scores' outer products (p, p); `pieces`: what the states need to follow a step.
+class Fit(NamedTuple):
+    """What came out. The p figures of a `Guess` that are `free` (p,) were sought.
+
+    `guess` (8,), SI. `sizes` (2,): of the errors of angle [rad] and rate [rad/s] that are left,
+    rms. `covariances`, each (p, p): robust against errors alike within a piece, and plain.
+    `pieces`: of all records.
     """
 
-    gradient: Reals
-    hessian: Reals
-    scatter: Reals
-    pieces: list[tuple[Reals, Reals, Reals]]
+    guess: Reals
+    free: NDArray[np.intp]
+    sizes: Reals
+    covariances: tuple[Reals, Reals]
+    pieces: int
 
 
-class Fit:
-    """Gauss-Newton with Levenberg's damping.
+def fit(segments: list[Segments], first: Reals, *, with_ratio: bool) -> Fit:
+    """From a first guess (8,). In rounds: figures by least squares, with the motion linear in the
+    pieces' beginnings; then the beginnings; then the sizes of both errors, which are their weights.
 
-    `guess` is the answer, `sizes` the errors of angle [rad] and rate [rad/s] that are left, rms.
+    Raises InputError for a fit that does not converge.
+    """
+    from scipy.optimize import least_squares
+
+    free = np.arange(ALL if with_ratio else ALL - 1)
+    guess = np.clip(first, LEAST, MOST)
+    starts = [np.stack([one.steer[:, 0], one.steer_rate[:, 0]], 1) for one in segments]
+    sought = Sought(free, np.array(_FIRST_SIZES))
+    for count in range(_ROUNDS):
+        problem = _Linear(segments, starts, sought, guess)
+        found = least_squares(
+            problem.errors, guess[free], problem.slopes, (LEAST[free], MOST[free]), x_scale="jac",
+            ftol=_COST_TOLERANCE, xtol=_STEP_TOLERANCE, max_nfev=MOST_EVALUATIONS,
+        )  # fmt: skip
+        if found.status <= 0:
+            break
+        moved = np.sum((problem.slopes(found.x) @ (found.x - guess[free])) ** 2)
+        guess[free] = found.x
+        pieces = [settled(a, sought, guess, b) for a, b in zip(segments, starts, strict=True)]
+        starts, sizes = [one.starts for one in pieces], sought.sizes * _sizes(pieces)
+        if count and moved < _MOVED:
+            return Fit(guess, free, sizes, _covariances(pieces), sum(one.s for one in segments))
+        sought = Sought(free, np.maximum(sizes, _LEAST_SIZE))
+    raise InputError(
+        "the fit to the bar's motion does not converge: a longer or stronger excitation, and hands "
+        "off the bar"
+    )
+
+
+class _Linear:
+    """Least squares in the figures alone, with the motion linear in the starts about those given,
+    which the best starts of each set of figures stay close to.
     """
 
-    def __init__(self, segments: list[Segments], *, with_ratio: bool) -> None:
-        self._segments = segments
-        self.free = np.arange(ALL if with_ratio else ALL - 1)
-        self.guess = np.zeros(ALL)
-        self._starts: list[Start] = [
-            (one.steer[:, 0].copy(), one.steer_rate[:, 0].copy()) for one in segments
+    def __init__(
+        self, segments: list[Segments], starts: list[Reals], sought: Sought, guess: Reals
+    ) -> None:
+        self._records = list(zip(segments, starts, strict=True))
+        self._sought, self._guess = sought, guess.copy()
+        self._at = np.full(len(sought.free), np.nan)
+        self._errors = self._slopes = np.empty(0)
+
+    def errors(self, figures: Reals) -> Reals:
+        """(n,)"""
+        self._go_to(figures)
+        return self._errors
+
+    def slopes(self, figures: Reals) -> Reals:
+        """Their derivatives by the figures, (n, p)."""
+        self._go_to(figures)
+        return self._slopes
+
+    def _go_to(self, figures: Reals) -> None:
+        """Errors and slopes are asked for in turn, and cost no more together than alone."""
+        if np.array_equal(figures, self._at):
+            return
+        self._at = figures.copy()
+        self._guess[self._sought.free] = figures
+        near = [
+            followed(a, self._sought, self._guess, b).without_starts() for a, b in self._records
         ]
-        self.sizes = np.array([1e-3, 1e-2])
-
-    def solve(self, guess: Reals) -> None:
-        """From a first guess; the sizes of both errors are found by the way."""
-        self.guess = np.clip(guess, LEAST, MOST)
-        for _ in range(3):
-            self._descend()
-            left = [self._misfit(one, start) for one, start in self._all()]
-            angle, rate = (np.concatenate([error[i] for error in left]) for i in (0, 1))
-            self.sizes = np.maximum([np.sqrt(np.mean(e**2)) for e in (angle, rate)], 1e-9)
-
-    def covariances(self) -> tuple[Reals, Reals]:
-        """Of the free figures, (p, p): robust against errors alike within a piece, and plain."""
-        found = self._linear()
-        inverse = np.asarray(np.linalg.pinv(found.hessian, rcond=1e-12, hermitian=True), float)
-        p, pieces = len(self.free), self.pieces
-        return inverse @ found.scatter @ inverse * pieces / max(pieces - p, 1), inverse
-
-    @property
-    def pieces(self) -> int:
-        """Of all records."""
-        return sum(one.s for one in self._segments)
-
-    def _all(self) -> Iterator[tuple[Segments, Start]]:
-        return zip(self._segments, self._starts, strict=True)
-
-    def _descend(self) -> None:
-        damping, cost = 1e-3, self._cost(self.guess, self._starts)
-        for _ in range(40):
-            problem = self._linear()
-            while True:
-                guess, starts = self._moved(problem, damping)
-                new = self._cost(guess, starts)
-                if new < cost:
-                    break
-                damping *= 10
-                if damping > 1e8:
-                    return
-            done = cost - new < 1e-7 * cost
-            self.guess, self._starts, cost, damping = guess, starts, new, damping / 10
-            if done:
-                return
-
-    def _moved(self, problem: _Linear, damping: float) -> tuple[Reals, list[Start]]:
-        """A step, and how the states follow it."""
-        hessian = problem.hessian
-        lifted = hessian + damping * np.diag(np.diag(hessian)) + 1e-9 * np.eye(len(hessian))
-        step = np.zeros(ALL)
-        step[self.free] = np.linalg.solve(lifted, problem.gradient)
-        guess = np.clip(self.guess + step, LEAST, MOST)
-        taken = (guess - self.guess)[self.free]
-        starts: list[Start] = []
-        for (pseudo, error, slope), (steer, rate) in zip(problem.pieces, self._starts, strict=True):
-            change = np.einsum("snm,sm->sn", pseudo, error - slope @ taken)
-            starts.append((steer + change[:, 0], rate + change[:, 1]))
-        return guess, starts
-
-    def _cost(self, guess: Reals, starts: list[Start]) -> float:
-        total = 0.0
-        for segment, (steer, rate) in zip(self._segments, starts, strict=True):
-            angles, rates = segment.follow(_guesses(guess[None]), steer[None], rate[None])
-            for error, size in (
-                (segment.steer - angles[0], self.sizes[0]),
-                (segment.steer_rate - rates[0], self.sizes[1]),
-            ):
-                total += float(np.sum((error / size) ** 2))
-        return total if np.isfinite(total) else np.inf
-
-    def _misfit(self, segment: Segments, start: Start) -> tuple[Reals, Reals]:
-        angles, rates = segment.follow(_guesses(self.guess[None]), start[0][None], start[1][None])
-        return segment.steer - angles[0], segment.steer_rate - rates[0]
-
-    def _derivatives(self, segment: Segments, start: Start) -> tuple[Reals, Reals, Reals]:
-        """Errors (s, 2m), their slopes (s, 2m, p) and those by the state (s, 2m, 2), weighted."""
-        p = len(self.free)
-        guesses = np.tile(self.guess, (p + 3, 1))
-        guesses[1 + np.arange(p), self.free] += _STEPS[self.free]
-        steer, rate = (np.tile(one, (p + 3, 1)) for one in start)
-        steer[-2] += _STATE_STEP
-        rate[-1] += _STATE_STEP
-        angles, rates = segment.follow(_guesses(guesses), steer, rate)
-        both = np.concatenate([angles / self.sizes[0], rates / self.sizes[1]], 2)
-        seen = np.concatenate(
-            [segment.steer / self.sizes[0], segment.steer_rate / self.sizes[1]], 1
-        )
-        steps = np.append(_STEPS[self.free], [_STATE_STEP, _STATE_STEP])
-        slope = np.moveaxis((both[1:] - both[0]) / steps[:, None, None], 0, 2)
-        return seen - both[0], slope[:, :, :p], slope[:, :, p:]
-
-    def _linear(self) -> _Linear:
-        p = len(self.free)
-        gradient, hessian, scatter = np.zeros(p), np.zeros((p, p)), np.zeros((p, p))
-        pieces: list[tuple[Reals, Reals, Reals]] = []
-        for segment, start in self._all():
-            error, slope, by_state = self._derivatives(segment, start)
-            pseudo = np.asarray(np.linalg.pinv(by_state), float)
-            pieces.append((pseudo, error, slope))
-            clean = slope - by_state @ (pseudo @ slope)
-            scores = np.einsum("smp,sm->sp", clean, error)
-            gradient += scores.sum(0)
-            hessian += np.einsum("smp,smq->pq", clean, clean)
-            scatter += scores.T @ scores
-        return _Linear(gradient, hessian, scatter, pieces)
+        self._errors = np.concatenate([errors.ravel() for errors, _ in near])
+        self._slopes = np.concatenate([one.reshape(-1, len(figures)) for _, one in near])
 
 
-def _guesses(rows: Reals) -> Guess:
-    return Guess(*(column[:, None] for column in rows.T))
+def _sizes(pieces: list[Pieces]) -> Reals:
+    """Rms of the errors of angle and rate, (2,)."""
+    both = [one.errors.reshape(len(one.errors), 2, -1).swapaxes(0, 1) for one in pieces]
+    return np.sqrt(np.mean(np.concatenate([one.reshape(2, -1) for one in both], 1) ** 2, 1))
+
+
+def _covariances(pieces: list[Pieces]) -> tuple[Reals, Reals]:
+    """As in `Fit`."""
+    near = [one.without_starts() for one in pieces]
+    hessian = sum(np.einsum("smp,smq->pq", slopes, slopes) for _, slopes in near)
+    scores = np.concatenate([np.einsum("smp,sm->sp", slopes, errors) for errors, slopes in near])
+    inverse = np.asarray(np.linalg.pinv(hessian, rcond=1e-12, hermitian=True), float)
+    s, p = scores.shape
+    return inverse @ (scores.T @ scores) @ inverse * s / max(s - p, 1), inverse

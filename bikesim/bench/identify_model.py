@@ -35,8 +35,8 @@ class Guess(NamedTuple):
     """What is sought, each (g, 1): a row a guess.
 
     `inertia` [kg m²], `coulomb_friction` F [N m], `viscous_friction` b [N m s/rad], `delay` d [s],
-    `offset` c [N m], `rate_bias` r [rad/s], `sticking_time` τ_s [s], `torque_ratio`: real torque
-    over what was sent.
+    `offset` c [N m], `rate_bias` r [rad/s], `sticking_time` τ_s [s] beyond a step of the record,
+    `torque_ratio`: real torque over what was sent.
     """
 
     inertia: Reals
@@ -59,6 +59,8 @@ class Segments:
 
     def __init__(self, record: BarRecord) -> None:
         self.record = record
+        if not all(np.isfinite(column).all() for column in record[:4]):
+            raise InputError("the record of the bar has values that are no finite numbers")
         steps = np.diff(record.time)
         if len(record.time) < 50 or not (steps > 0).all():
             raise InputError("the record of the bar is too short, or its time goes back")
@@ -85,20 +87,22 @@ class Segments:
         """Measured angle and rate (g, s, m) that g guesses give, each from a state (g, s) of its
         own at the beginning of each piece.
         """
-        g = len(guesses.inertia)
         torque = np.stack([self.torque(float(d)) for d in guesses.delay[:, 0]])
         torque = guesses.torque_ratio[:, :, None] * torque + guesses.offset[:, :, None]
+        torque = np.ascontiguousarray(np.moveaxis(torque, 2, 0))
         inertia = guesses.inertia + self.record.added_inertia
-        angle, rate = np.empty((g, self.s, self.m)), np.empty((g, self.s, self.m))
-        for k in range(self.m):
-            angle[:, :, k], rate[:, :, k] = steer, steer_rate
-            h = self.steps[:, k]
-            # Within a step at the shortest: Coulomb's law, implicitly, which turns no bar around.
-            stopping = torque[:, :, k] + inertia * steer_rate / np.maximum(guesses.sticking_time, h)
-            friction = np.clip(stopping, -guesses.coulomb_friction, guesses.coulomb_friction)
+        most, least = guesses.coulomb_friction, -guesses.coulomb_friction
+        angle, rate = np.empty_like(torque), np.empty_like(torque)
+        for k, h in enumerate(self.steps.T):
+            angle[k], rate[k] = steer, steer_rate
+            # Within a step more: with τ_s = 0 Coulomb's law, implicitly, which turns no bar around.
+            stopping = torque[k] + inertia / (guesses.sticking_time + h) * steer_rate
+            friction = np.minimum(np.maximum(stopping, least), most)
             # Implicit in the damping too, so that no guess runs away.
-            pushed = steer_rate + h / inertia * (torque[:, :, k] - friction)
-            after = pushed / (1.0 + h / inertia * guesses.viscous_friction)
+            per_torque = h / inertia
+            pushed = steer_rate + per_torque * (torque[k] - friction)
+            after = pushed / (1.0 + per_torque * guesses.viscous_friction)
             steer = steer + 0.5 * h * (steer_rate + after)
             steer_rate = after
-        return angle, rate + guesses.rate_bias[:, :, None]
+        rate += guesses.rate_bias
+        return np.moveaxis(angle, 0, 2), np.moveaxis(rate, 0, 2)

@@ -116,6 +116,9 @@ def test_another_bar_with_coulombs_own_friction_and_an_offset():
     for figure in found.all():
         true = truth.get(figure.name, 0.01)
         assert figure.low <= true <= figure.high, figure
+    # As much as the sensors' noise: no piece is left at a beginning that does not fit.
+    assert found.angle_error == pytest.approx(1e-4, rel=0.03)
+    assert found.rate_error == pytest.approx(2e-3, rel=0.03)
 
 
 def test_weights_tell_real_torque_from_commanded():
@@ -151,6 +154,26 @@ def test_a_hand_on_the_bar_is_no_inertia():
     record = BarRecord(time, 0.4 * np.sin(9 * time), steer, rate)
     with pytest.raises(InputError, match="no inertia can be told from this"):
         identify_bar([record])
+
+
+def test_a_delay_beyond_what_is_looked_for():
+    rig = RigSettings(sensor_delay=0.06, motor_delay=0.06, **NOISY)
+    with pytest.raises(InputError, match=r"the delay is not to be found between 0 and 0\.1 s"):
+        identify_bar([recorded(rig, 0.2)])
+
+
+def test_a_fit_that_does_not_converge_is_no_answer(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("bikesim.bench.identify_fit.MOST_EVALUATIONS", 2)
+    with pytest.raises(InputError, match="does not converge"):
+        identify_bar([recorded(RigSettings(coulomb_friction=0.03, **NOISY), 0.2)])
+
+
+def test_a_record_with_a_gap_that_is_no_number():
+    time = np.arange(0.0, 5.0, 5e-3)
+    steer = np.sin(9 * time)
+    steer[300] = np.nan
+    with pytest.raises(InputError, match="no finite numbers"):
+        identify_bar([BarRecord(time, steer, steer, steer)])
 
 
 def test_the_excitation_keeps_to_its_torque_and_fades():
