@@ -75,7 +75,8 @@ class Emulator:
             self.longest = max(self.longest, behind)
             if behind > _MOST_BEHIND:
                 passed = now - QUANTUM
-            while passed + QUANTUM <= now:
+            # One, and then the bus again: while it catches up the host's commands must not wait.
+            if passed + QUANTUM <= now:
                 passed += QUANTUM
                 self._advance(passed, now)
         self._screen.close()

@@ -8,9 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from bikesim.bench.bus import open_bus
 from bikesim.bench.display import ScreenReader, screen_name
-from bikesim.bench.frame import Frame, to_message
 from bikesim.bench.mishaps import Mishap
 from bikesim.bench.profile import BenchSettings, load_bench
 from bikesim.bench.scenario import profile_of
@@ -146,25 +144,6 @@ def test_a_mishap_is_a_fault_with_its_name(tmp_path: Path):
     assert before != 0.0
     last = max(now for now, torque in bench.torques if torque != 0.0)
     assert last - happened < 0.05 + bench.emulator.longest
-    assert bench.torques[-1][1] == 0.0
-
-
-def test_a_second_master_on_a_bus_that_echoes(tmp_path: Path):
-    """One frame too many, among those of the host that come back to it."""
-    bench = Bench(written("cia402-emulated", tmp_path))
-    sent: list[float] = []
-    with open_bus(bench.settings.bus) as other:
-
-        def interfere(host: subprocess.Popen[str], since: float) -> None:
-            if since > 0.7 and not sent:
-                sent.append(since)
-                for _ in range(5):
-                    other.send(to_message(Frame(0x205, bytes(5))))
-
-        ended = bench.until_in_time("run", str(bench.path), "--duration", "20", "-o", "r.h5",
-                                    do=interfere)  # fmt: skip
-    assert ended.returncode == 2, ended.stderr
-    assert "fault 24: " in ended.stderr
     assert bench.torques[-1][1] == 0.0
 
 

@@ -33,13 +33,16 @@ class EmulatedDrive:
 
     `angle` [rad] and `rate` [rad/s] of its shaft are set from outside; `torque` is what it gives.
     A heartbeat of the host that stops is a fault only where object 6007 says so; else the last
-    torque acts on, as some real drives let it.
+    torque acts on, as some real drives let it. `strength`: what share of the torque that it is told
+    its motor gives; `offset` [N m]: what it measures beside that.
     """
 
     def __init__(self, node: int, motor: Motor, *, without: Iterable[int] = ()) -> None:
         """`without`: indices of objects that this maker's drive does not have."""
         self.node, self.motor = node, motor
         self.angle = self.rate = 0.0
+        self.strength, self.offset = 1.0, 0.0
+        self._stuck_mode: int | None = None
         self._without = tuple(without)
         self._power_up()
 
@@ -65,7 +68,7 @@ class EmulatedDrive:
     @property
     def torque(self) -> float:
         """What acts on the shaft [N m]."""
-        return self.motor.torque(self._acting())
+        return self.strength * self.motor.torque(self._acting())
 
     def fail(self, error: int, time: float, *, remains: bool = False) -> None:
         """A fault of its own, by its emergency error code; `remains`: it cannot be reset."""
@@ -73,6 +76,16 @@ class EmulatedDrive:
         self._power.fail(time)
         self.objects.set(0x603F, 0, error)
         self._emergency(error)
+
+    def disable(self) -> None:
+        """By itself, without an error: somebody pressed a button on it."""
+        self._power.disable()
+
+    def stay_in_mode(self, mode: int | None) -> None:
+        """Of operation, whatever it is told (6060); None: as it is told from now on."""
+        self._stuck_mode = mode
+        told = self.objects.get(0x6060)
+        self.objects.set(0x6061, 0, told if mode is None else mode)
 
     def receive(self, frame: Frame, time: float) -> list[Frame]:
         """See `Device`."""
@@ -171,7 +184,7 @@ class EmulatedDrive:
             self.objects.set(0x603F, 0, 0)
             self._emergency(0)
         elif index == 0x6060:
-            self.objects.set(0x6061, 0, value)
+            self.objects.set(0x6061, 0, value if self._stuck_mode is None else self._stuck_mode)
         elif index == 0x605A:
             self._power.quick_stop_option = value
         elif index == 0x1017:
@@ -189,6 +202,7 @@ class EmulatedDrive:
 
     def _measure(self) -> None:
         self.objects.set(0x6041, 0, self._power.statusword)
-        self.objects.set(0x6077, 0, self._acting())
+        offset = 1000 * self.offset / self.motor.rated_torque
+        self.objects.set(0x6077, 0, round(self.strength * self._acting() + offset))
         self.objects.set(0x6064, 0, self.motor.position(self.angle))
         self.objects.set(0x606C, 0, self.motor.velocity(self.rate))

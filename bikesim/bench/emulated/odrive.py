@@ -52,11 +52,16 @@ class ODriveConfiguration:
 
 
 class EmulatedODrive:
-    """`angle` [rad] and `rate` [rad/s] of its shaft are set from outside; `torque` is its own."""
+    """`angle` [rad] and `rate` [rad/s] of its shaft are set from outside; `torque` is its own.
+
+    `strength`: what share of the torque that it is told its motor gives; `offset` [N m]: what it
+    measures beside that.
+    """
 
     def __init__(self, node: int, configuration: ODriveConfiguration) -> None:
         self.node, self._set = node, configuration
         self.angle = self.rate = 0.0
+        self.strength, self.offset = 1.0, 0.0
         self.state = AxisState.IDLE
         self.errors = self.disarm_reason = 0
         self._result = _SUCCESS
@@ -78,7 +83,7 @@ class EmulatedODrive:
         if not enabled or self._modes != (TORQUE_CONTROL, PASSTHROUGH):
             return 0.0
         limit = self._current_limit * self._set.torque_constant
-        return max(-limit, min(limit, self._input_torque))
+        return self.strength * max(-limit, min(limit, self._input_torque))
 
     def fail(self, error: AxisError) -> None:
         """An error of its own: the motor is free at once."""
@@ -87,6 +92,14 @@ class EmulatedODrive:
             self.state = AxisState.IDLE
             self.disarm_reason = error
             self._result = _DISARMED
+
+    def disable(self) -> None:
+        """By itself, without an error."""
+        self.state = AxisState.IDLE
+
+    def stay_in_mode(self, mode: int | None) -> None:
+        """Of control; its cyclic messages do not tell. None: torque."""
+        self._modes = (TORQUE_CONTROL if mode is None else mode, PASSTHROUGH)
 
     def receive(self, frame: Frame, time: float) -> list[Frame]:
         """See `Device`."""
@@ -147,7 +160,9 @@ class EmulatedODrive:
             Command.HEARTBEAT: lambda: _HEARTBEAT.pack(self.errors, self.state, self._result),
             Command.GET_ERROR: lambda: _TWO_WORDS.pack(self.errors, self.disarm_reason),
             Command.GET_ENCODER_ESTIMATES: self._estimates,
-            Command.GET_TORQUES: lambda: _TWO_FLOATS.pack(self._input_torque, self.torque),
+            Command.GET_TORQUES: lambda: _TWO_FLOATS.pack(
+                self._input_torque, self.torque + self.offset
+            ),
         }[command]()
         return Frame(message_id(self.node, command), data)
 
