@@ -139,7 +139,8 @@ class BusPort:
         """How many have been sent that have not come back."""
         self._wait = _waiting(self._bus)
         self.wakes_late = _LATE if self._wait is None else _PROMPT
-        self._error_of: tuple[type[Exception], ...] = (can.CanError, OSError)
+        # ValueError: of a socket that is closed.
+        self._error_of: tuple[type[Exception], ...] = (can.CanError, OSError, ValueError)
         self.trouble = ""
         self._deaf = False
 
@@ -163,9 +164,16 @@ class BusPort:
         wait = self._wait
         if wait is None:
             return self._receive(timeout)
-        if timeout <= 0.0:
-            # The system is asked, which takes a tenth of the time that the bus would.
-            return self._receive(0.0) if wait(0.0) else None
+        try:
+            if timeout <= 0.0:
+                # The system is asked, which takes a tenth of the time that the bus would.
+                return self._receive(0.0) if wait(0.0) else None
+            return self._waited_for(timeout, wait)
+        except self._error_of as error:
+            self.trouble, self._deaf = f"cannot receive: {told(error)}", True
+            return None
+
+    def _waited_for(self, timeout: float, wait: Callable[[float], object]) -> Frame | None:
         deadline = time.perf_counter() + timeout
         while wait(max(timeout, 0.0)):
             frame = self._receive(0.0)

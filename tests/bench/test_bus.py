@@ -123,6 +123,28 @@ class TestPort:
             port.send([Frame(0x205)])
             assert port.trouble.startswith("cannot send")
 
+    @pytest.mark.parametrize("timeout", [0.0, 0.01])
+    @pytest.mark.parametrize("how", ["shut down", "its socket closed by another"])
+    def test_a_socket_that_is_gone_is_trouble_too(self, timeout: float, how: str):
+        settings = BusSettings(
+            interface="udp_multicast",
+            channel="239.74.163.2",
+            arguments={"port": 40_000 + os.getpid() % 20_000},
+        )
+        bus = open_bus(settings)
+        port = BusPort(bus, {0x110})
+        assert port.receive(timeout) is None
+        assert port.trouble == ""
+        if how == "shut down":
+            bus.shutdown()
+        else:
+            os.close(bus.fileno())
+        assert port.receive(timeout) is None
+        assert port.trouble.startswith("cannot receive: ")
+        assert not port.send([Frame(0x205)])
+        assert port.trouble.startswith("cannot send: ")
+        port.close()
+
 
 class TestEcho:
     """A bus that gives back what one sends; a second master on it all the same is seen."""
