@@ -15,9 +15,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     for item in items:
-        if real := _in_real_time(item):
+        group = item.nodeid.split("::")[0]
+        if _in_real_time(item):
+            group = "real time"
             item.add_marker(pytest.mark.flaky(reruns=2))
-        item.add_marker(pytest.mark.xdist_group("real time" if real else str(item.path)))
+        item.add_marker(pytest.mark.xdist_group(group))
     items.sort(key=lambda item: (not _in_real_time(item), item.path not in slow))
 
 

@@ -49,12 +49,12 @@ _CHECKED = {(0x6076, 0): "rated torque", (0x608F, 1): "encoder", (0x608F, 2): "e
 
 
 def doubly_written(drive: Cia402Settings) -> str:
-    """What of `drive.objects` would undo the set-up or what it checked, in words; else empty."""
+    """What of its `objects` would undo the set-up or what it checked, in words; else empty."""
     taken = {(one.index, one.subindex): one.why for one in _own_writes(drive)} | _CHECKED
     for one in drive.objects:
         if why := taken.get((one.index, one.subindex)):
             return (
-                f"drive.objects: {one.index:04X}:{one.subindex:02X} ({why}) is the set-up's own, "
+                f"objects: {one.index:04X}:{one.subindex:02X} ({why}) is the set-up's own, "
                 "by the profile's other keys; leave it out"
             )
     return ""

@@ -110,4 +110,8 @@ class Cia402Settings(Settings):
                 f"torque_limit = {self.torque_limit}: is less than a thousandth of "
                 f"rated torque × gear = {self.rated_torque * self.gear:g} N m"
             )
+        from bikesim.bench.cia402_objects import doubly_written
+
+        if wrong := doubly_written(self):
+            raise ValueError(wrong)
         return self

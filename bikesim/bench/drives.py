@@ -7,6 +7,7 @@ from bikesim.bench.cia402_drive import Cia402Drive
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.drive import Drive
 from bikesim.bench.emulated.cia402_drive import EmulatedDrive
+from bikesim.bench.emulated.device import DriveDevice
 from bikesim.bench.emulated.motor import Motor
 from bikesim.bench.emulated.odrive import EmulatedODrive, ODriveConfiguration
 from bikesim.bench.odrive_drive import ODrive
@@ -16,14 +17,11 @@ DriveSettings = Cia402Settings | ODriveSettings
 """Of a profile's [drive]; its `kind` tells which."""
 
 
-Emulated = EmulatedDrive | EmulatedODrive
-
-
 class DriveKind(NamedTuple):
     """Both sides of the bus, each made of the profile's settings of this kind."""
 
     host: Callable[[Any], Drive]
-    emulated: Callable[[Any], Emulated]
+    emulated: Callable[[Any], DriveDevice]
 
 
 KINDS: dict[type[DriveSettings], DriveKind] = {
@@ -41,6 +39,6 @@ def make_drive(settings: DriveSettings) -> Drive:
     return KINDS[type(settings)].host(settings)
 
 
-def emulated_drive(settings: DriveSettings) -> Emulated:
+def emulated_drive(settings: DriveSettings) -> DriveDevice:
     """The drive that a profile expects, as a device of an emulated bench."""
     return KINDS[type(settings)].emulated(settings)

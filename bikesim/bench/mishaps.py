@@ -7,17 +7,11 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, Strict, model_validator
 
-from bikesim.bench.cia402 import CYCLIC_SYNCHRONOUS_TORQUE
-from bikesim.bench.cia402_frames import CobIds, DriveCommand, pack_command
-from bikesim.bench.emulated.cia402_drive import EmulatedDrive
 from bikesim.bench.frame import Frame
-from bikesim.bench.odrive import AxisError, set_input_torque
 from bikesim.bench.plant import Plant
 from bikesim.settings import Settings
 from bikesim.textfile import located, read_toml
 
-_SHORT_CIRCUIT = 0x2310  # emergency error code: continuous over current
-_ENABLED = 0x0F  # controlword
 _SENSORS = (0x110, 0x111, 0x120)
 _ids = Annotated[tuple[int, ...], Strict(False)]
 
@@ -97,7 +91,7 @@ class Mishaps:
                 if mishap.kind in _LASTING:
                     _LASTING[mishap.kind](self._plant, mishap.value, since)
                 elif mishap.kind == "fail" and mishap not in self._on:
-                    _fail(self._plant)
+                    self._plant.drive.break_down()
             elif mishap in self._on:
                 self._end(mishap)
         self._on = tuple(on)
@@ -109,7 +103,7 @@ class Mishaps:
             if mishap.kind == "unplug" or (mishap.kind == "silence" and frame.id not in _SENSORS):
                 return ()
             if mishap.kind == "master" and frame.id == _SENSORS[0]:
-                frames = (frame, _command(self._plant))
+                frames = (frame, self._plant.drive.command_of_another())
             elif frame.id in mishap.ids:
                 if mishap.kind == "drop":
                     return ()
@@ -169,22 +163,6 @@ def _weak(plant: Plant, share: float) -> None:
 
 def _offset(plant: Plant, torque: float) -> None:
     plant.drive.offset = plant.at_drive(torque)
-
-
-def _fail(plant: Plant) -> None:
-    if isinstance(plant.drive, EmulatedDrive):
-        plant.drive.fail(_SHORT_CIRCUIT, 0.0)
-    else:
-        plant.drive.fail(AxisError.DC_BUS_OVER_CURRENT)
-
-
-def _command(plant: Plant) -> Frame:
-    """Of another host: no torque, and the drive stays enabled."""
-    drive = plant.drive
-    if isinstance(drive, EmulatedDrive):
-        command = DriveCommand(_ENABLED, 0, CYCLIC_SYNCHRONOUS_TORQUE)
-        return Frame(CobIds.of_node(drive.node).command, pack_command(command))
-    return set_input_torque(drive.node, 0.0)
 
 
 # What they do to a plant at each quantum, with their value and for how long they have done so [s].

@@ -8,8 +8,6 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from bikesim.bench.bus import BusSettings
-from bikesim.bench.cia402_objects import doubly_written
-from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.drives import DriveSettings
 from bikesim.bench.faults import Thresholds
 from bikesim.bench.guard import TorqueLimits
@@ -89,8 +87,6 @@ class BenchSettings(Settings):
                 f"limits.torque = {self.limits.torque} N m: is more than drive.torque_limit = "
                 f"{self.drive.torque_limit} N m, to which the drive itself keeps"
             )
-        if isinstance(self.drive, Cia402Settings) and (wrong := doubly_written(self.drive)):
-            raise ValueError(wrong)
         if self.limits.continuous_torque > self.limits.torque:
             raise ValueError(
                 f"limits.continuous_torque = {self.limits.continuous_torque} N m: is more than "

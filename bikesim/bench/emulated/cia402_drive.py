@@ -10,7 +10,14 @@ from bikesim.bench.cia402 import (
     NmtState,
     State,
 )
-from bikesim.bench.cia402_frames import NMT, SYNC, heartbeat
+from bikesim.bench.cia402_frames import (
+    NMT,
+    SYNC,
+    CobIds,
+    DriveCommand,
+    heartbeat,
+    pack_command,
+)
 from bikesim.bench.emulated.device import Periodic
 from bikesim.bench.emulated.motor import Motor
 from bikesim.bench.emulated.objects import Objects
@@ -20,7 +27,8 @@ from bikesim.bench.emulated.sdo_server import SdoServer
 from bikesim.bench.frame import Frame
 from bikesim.data import data_path
 
-_PDO_TOO_SHORT = 0x8210  # emergency error code
+_PDO_TOO_SHORT, _SHORT_CIRCUIT = 0x8210, 0x2310  # emergency error codes
+_ENABLED = 0x0F  # controlword
 _NMT_STATES = {
     NmtCommand.START: NmtState.OPERATIONAL,
     NmtCommand.STOP: NmtState.STOPPED,
@@ -80,6 +88,15 @@ class EmulatedDrive:
     def disable(self) -> None:
         """By itself, without an error: somebody pressed a button on it."""
         self._power.disable()
+
+    def break_down(self) -> None:
+        """A short circuit: continuous over current."""
+        self.fail(_SHORT_CIRCUIT, 0.0)
+
+    def command_of_another(self) -> Frame:
+        """See `DriveDevice`."""
+        command = DriveCommand(_ENABLED, 0, CYCLIC_SYNCHRONOUS_TORQUE)
+        return Frame(CobIds.of_node(self.node).command, pack_command(command))
 
     def stay_in_mode(self, mode: int | None) -> None:
         """Of operation, whatever it is told (6060); None: as it is told from now on."""

@@ -17,6 +17,40 @@ class Device(Protocol):
         ...
 
 
+class DriveDevice(Device, Protocol):
+    """A drive: the bench sets its shaft's `angle` [rad] and `rate` [rad/s], mishaps the rest.
+
+    `strength`: what share of the torque that it is told its motor gives; `offset` [N m]: what it
+    measures beside that.
+    """
+
+    angle: float
+    rate: float
+    strength: float
+    offset: float
+
+    @property
+    def torque(self) -> float:
+        """That acts on the shaft [N m]."""
+        ...
+
+    def disable(self) -> None:
+        """By itself, without an error."""
+        ...
+
+    def stay_in_mode(self, mode: int | None) -> None:
+        """Of operation, by its number, whatever it is told; None: as it is told from now on."""
+        ...
+
+    def break_down(self) -> None:
+        """An error of its own, as of a short circuit: the motor is free."""
+        ...
+
+    def command_of_another(self) -> Frame:
+        """What another host would send it: no torque, and it stays enabled."""
+        ...
+
+
 class Periodic:
     """Says when something that happens every `period` [s] is due; 0: never.
 

@@ -13,6 +13,7 @@ from bikesim.bench.odrive import (
     AxisState,
     Command,
     message_id,
+    set_input_torque,
 )
 from bikesim.bench.odrive_settings import ODriveSettings
 
@@ -96,6 +97,14 @@ class EmulatedODrive:
     def disable(self) -> None:
         """By itself, without an error."""
         self.state = AxisState.IDLE
+
+    def break_down(self) -> None:
+        """Over current."""
+        self.fail(AxisError.DC_BUS_OVER_CURRENT)
+
+    def command_of_another(self) -> Frame:
+        """See `DriveDevice`."""
+        return set_input_torque(self.node, 0.0)
 
     def stay_in_mode(self, mode: int | None) -> None:
         """Of control; its cyclic messages do not tell. None: torque."""

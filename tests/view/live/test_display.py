@@ -43,7 +43,7 @@ PATH = np.stack([np.arange(-50, 200.0), 1.5 * np.sin(np.arange(-50, 200.0) / 8)]
 Picture = np.ndarray
 
 # Processes with OpenGL in software, which take their time.
-pytestmark = [pytest.mark.slow, pytest.mark.real_time]
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
