@@ -61,6 +61,7 @@ def _profile(name: str, folder: Path) -> Path:
     settings = load_bench(name)
     bus = settings.bus.model_copy(update={"arguments": {"port": 30_000 + os.getpid() % 10_000}})
     changed = settings.model_copy(update={"bus": bus})
+    changed = changed.model_copy(update={"commissioned": changed.commissioning})
     path = folder / f"{name}.toml"
     path.write_text(tomli_w.dumps(changed.model_dump(mode="json", exclude_none=True)))
     return path

@@ -1,5 +1,8 @@
+import ctypes
 import gc
 import os
+
+import pytest
 
 from bikesim.realtime import Granted, real_time
 
@@ -33,3 +36,46 @@ def test_it_is_given_back_after_an_exception_too():
     except RuntimeError:
         pass
     assert gc.isenabled()
+
+
+def no_scheduler(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("getscheduler", "setscheduler", "getparam"):
+        monkeypatch.delattr(os, f"sched_{name}")
+    monkeypatch.delattr(os, "SCHED_FIFO")
+    monkeypatch.delattr(os, "sched_param")
+
+
+class WithoutPrctl:
+    """The C library of macOS: memory locks, but no prctl."""
+
+    def __init__(self, *arguments: object, **more: object) -> None: ...
+
+    def mlockall(self, flags: int) -> int:
+        return 0
+
+    def munlockall(self) -> int:
+        return 0
+
+
+def test_on_a_system_without_any_of_it_that_is_said(monkeypatch: pytest.MonkeyPatch):
+    """As on Windows, where no library has no name."""
+
+    def no_library(name: str | None, **more: object) -> None:
+        raise TypeError("argument of type 'NoneType' is not iterable")
+
+    no_scheduler(monkeypatch)
+    monkeypatch.setattr(ctypes, "CDLL", no_library)
+    with real_time() as granted:
+        assert not gc.isenabled()
+    assert gc.isenabled()
+    assert "real-time scheduling is not to be had on this system" in str(granted.scheduling)
+    assert granted.memory_lock == granted.timer_slack == "not to be had on this system"
+
+
+def test_what_a_system_has_is_granted(monkeypatch: pytest.MonkeyPatch):
+    no_scheduler(monkeypatch)
+    monkeypatch.setattr(ctypes, "CDLL", WithoutPrctl)
+    with real_time() as granted:
+        pass
+    assert granted.memory_lock is None
+    assert granted.timer_slack == "not to be had on this system"

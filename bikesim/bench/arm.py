@@ -21,9 +21,22 @@ LISTEN = 0.25
 
 _PATIENCE, _REST = 2.0, 0.2  # s
 
+_STOP_OPEN = "fault 21: the emergency stop is open: close it first"
 
-def listen(bus: "can.BusABC", drive: Drive, bar: Bar, others: Iterable[Traffic] = ()) -> None:
-    """Hears who is there, sending nothing. Raises InputError: nobody, another host, no bus."""
+
+def listen(
+    bus: "can.BusABC",
+    drive: Drive,
+    bar: Bar,
+    others: Iterable[Traffic] = (),
+    *,
+    enabling: bool = True,
+) -> None:
+    """Hears who is there, sending nothing. Raises InputError: nobody, another host, no bus.
+
+    `enabling`: the drive is to be; then an emergency stop seen open, which takes its power and
+    thus its answers, is refused too.
+    """
     import time
 
     heard: set[int] = set()
@@ -37,6 +50,8 @@ def listen(bus: "can.BusABC", drive: Drive, bar: Bar, others: Iterable[Traffic] 
         frame = from_message(message)
         if frame is not None:
             heard.add(frame.id)
+            if frame.id in bar.ids:
+                bar.receive(frame, time.monotonic())
     if masters := sorted(heard & drive.host_ids):
         raise InputError(
             f"fault 24: somebody else sends {_told(masters)}, which is this host's to send: "
@@ -49,6 +64,9 @@ def listen(bus: "can.BusABC", drive: Drive, bar: Bar, others: Iterable[Traffic] 
         raise InputError(f"nobody answers on the bus within {LISTEN:g} s: {why}")
     if silent := sorted(expected - heard):
         raise InputError(f"nobody sends {_told(silent)} within {LISTEN:g} s: is the node powered?")
+    seen = bar.view(time.monotonic())
+    if enabling and seen.fresh and not seen.estop_closed:
+        raise InputError(_STOP_OPEN)
 
 
 def _told(ids: Iterable[int]) -> str:
@@ -87,7 +105,7 @@ class _Arming:
         if o.bus_trouble:
             raise InputError(f"fault 20: {o.bus_trouble}")
         if not o.estop_closed:
-            raise InputError("fault 21: the emergency stop is open: close it first")
+            raise InputError(_STOP_OPEN)
         if not abs(o.torque_measured) <= self._thresholds.rest_torque:
             raise InputError(
                 f"fault 25: the drive measures {o.torque_measured:+.2f} N m before it is told any; "

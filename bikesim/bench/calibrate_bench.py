@@ -57,16 +57,20 @@ class NodeCalibrator:
     def measure(self, positions: Sequence[float], *, anew: bool = False) -> Calibrated:
         """Through all `positions` [rad] and the swings; changes nothing. Raises InputError."""
         acting = self.acting
-        if self._samples(0.1)[-1].estop_closed:
-            raise InputError(
-                "press the emergency stop first: a calibration changes only without power"
-            )
+        self.check_unpowered()
         held = [self._held(angle) for angle in positions]
         self._ask(f"now swing the bar slowly to and fro, 20 deg and more, for {self._swing:g} s;")
         samples = self._samples(self._swing)
         pot, gyro = self._raw(samples)
         swings = Swings(np.array([one.time for one in samples]), pot, gyro)
         return calibrated(held, swings, acting, anew=anew)
+
+    def check_unpowered(self) -> None:
+        """Raises InputError while the emergency stop is closed: the drive may have power."""
+        if self._samples(0.1)[-1].estop_closed:
+            raise InputError(
+                "press the emergency stop first: a calibration changes only without power"
+            )
 
     def store(self, calibration: NodeCalibration) -> None:
         """In the node, which keeps it without power. Raises InputError."""

@@ -155,20 +155,20 @@ class CalibrationClient:
 
     def _ask(self, command: Command, parameter: int = 0, value: int = 0) -> int:
         self._sequence = (self._sequence + 1) % 16
-        frame = encode_command(Exchange(self._sequence, command, parameter, 0, value))
+        asked = Exchange(self._sequence, command, parameter, 0, value)
         for _ in range(_ATTEMPTS):
-            self._link.send(frame)
-            reply = self._answer(command)
+            self._link.send(encode_command(asked))
+            reply = self._answer(asked)
             if reply is not None:
                 return self._accepted(reply)
         raise InputError("sensor node: does not answer a calibration command (0x112)")
 
-    def _answer(self, command: Command) -> Exchange | None:
+    def _answer(self, asked: Exchange) -> Exchange | None:
         for frame in until(self._link, self._link.now() + _RESPONSE_TIME):
             if frame.id != self._reply_id:
                 continue
             reply = decode_reply(frame.data)
-            if reply and (reply.sequence, reply.command) == (self._sequence, command):
+            if reply and reply[:3] == asked[:3]:
                 return reply
         return None
 

@@ -3,24 +3,32 @@
 import time
 from collections import defaultdict
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from bikesim.bench.bus import close_bus, filter_for, open_bus
+from bikesim.bench.bus import close_bus, open_bus
 from bikesim.bench.bus_errors import received
+from bikesim.bench.calibration_check import calibration_finding, link_to_node
+from bikesim.bench.check_drive import check_drive
 from bikesim.bench.continuity import BadFrame, Flaw
-from bikesim.bench.database import STEER_STATE, WHEEL_SPEED, cycle_time, message
+from bikesim.bench.database import (
+    STEER_COMMAND,
+    STEER_DIAG,
+    STEER_REPLY,
+    STEER_STATE,
+    WHEEL_SPEED,
+    cycle_time,
+    message,
+)
 from bikesim.bench.drive import Drive
 from bikesim.bench.drives import make_drive
+from bikesim.bench.finding import Finding
 from bikesim.bench.frame import from_message
-from bikesim.bench.parts import Parts, loop_port
 from bikesim.bench.preflight import checked_load
 from bikesim.bench.profile import BenchSettings
 from bikesim.bench.profile_file import change_profile, own_profile
 from bikesim.bench.sensor_node import SteerDecoder, SteerReading
 from bikesim.bench.wheel_node import WheelDecoder, WheelReading
-from bikesim.clock import RealTimeClock
 from bikesim.errors import InputError
-from bikesim.realtime import real_time
 
 if TYPE_CHECKING:
     import can
@@ -28,20 +36,13 @@ if TYPE_CHECKING:
 _LISTEN = 1.0  # s
 _RATE_WITHIN = 0.05
 _CLOCK_WITHIN = 1e-3
-
-
-class Finding(NamedTuple):
-    """A line of the table."""
-
-    good: bool
-    what: str
-    found: str
-    wanted: str
+_NAMED = 8
 
 
 def check(bench: BenchSettings, *, pulse: bool = False) -> list[Finding]:
-    """Listens, then sets the drive up and leaves it disabled. Raises InputError without a bus.
+    """Listens, then sets the drive up and looks at it, disabled. Raises InputError without a bus.
 
+    It is enabled, at zero torque for the proof of its watchdog, only where all else is well.
     `pulse`: then also arms it and sends the commissioning pulse.
     """
     drive = make_drive(bench.drive)
@@ -52,8 +53,14 @@ def check(bench: BenchSettings, *, pulse: bool = False) -> list[Finding]:
     try:
         heard.listen(bus)
         findings += heard.findings()
-        if all(one.good for one in findings):
-            findings += _of_drive(bus, bench, drive, pulse=pulse)
+        if heard.is_disturbed:
+            wanted = "no error frames, no other host"
+            findings.append(Finding(False, "drive", "not asked: see above", wanted))
+        else:
+            if bench.bar.source == "node":
+                findings.append(calibration_finding(link_to_node(bus), bench.bar.calibration))
+            well = all(one.good for one in findings)
+            findings += check_drive(bus, bench, drive, well=well, pulse=pulse)
     finally:
         close_bus(bus)
     return findings
@@ -111,11 +118,33 @@ class _Heard:
         self._lost[one] += reading.lost
         self._times[one].append((now, reading.time))
 
+    @property
+    def is_disturbed(self) -> bool:
+        """Whether nothing may be sent."""
+        return self._errors > 0 or any(self._counts[one] for one in self._masters())
+
+    def _masters(self) -> frozenset[int]:
+        """What only a host sends."""
+        node = {message(STEER_COMMAND).frame_id} if self._bench.bar.source == "node" else set()
+        return self._drive.host_ids | node
+
+    def _others(self) -> str:
+        """Who sends what is nobody's of the profile."""
+        known = self._drive.ids | self._masters()
+        if self._bench.bar.source == "node":
+            known |= {message(one).frame_id for one in (STEER_STATE, STEER_DIAG, STEER_REPLY)}
+        if self._wheel is not None:
+            known |= {self._wheel.id}
+        others = sorted(one for one, count in self._counts.items() if count and one not in known)
+        named = ", ".join(f"{one:#05x}" for one in others[:_NAMED])
+        return f"{named} and {len(others) - _NAMED} more" if len(others) > _NAMED else named
+
     def findings(self) -> list[Finding]:
-        masters = [f"{one:#05x}" for one in self._drive.host_ids if self._counts[one]]
+        masters = [f"{one:#05x}" for one in sorted(self._masters()) if self._counts[one]]
         findings = [
             Finding(not self._errors, "error frames", str(self._errors), "0"),
             Finding(not masters, "another host", ", ".join(masters) or "none", "none"),
+            Finding(True, "ids of nobody in the profile", self._others() or "none", "none"),
         ]
         if self._bench.bar.source == "node":
             findings += self._sensor("sensor node", STEER_STATE)
@@ -178,34 +207,6 @@ class _Heard:
         still = abs(seen.steer_rate) < 0.05
         found = f"{seen.steer:+.4f} rad, {seen.steer_rate:+.4f} rad/s"
         yield Finding(still, "bar", found, "at rest")
-
-
-def _of_drive(
-    bus: "can.BusABC", bench: BenchSettings, drive: Drive, *, pulse: bool
-) -> Iterable[Finding]:
-    filter_for(bus, drive.ids)
-    try:
-        lines = drive.set_up(bus)
-    except InputError as error:
-        return [Finding(False, "drive", str(error), "as in the profile")]
-    filter_for(bus, None)
-    # What it does not have, it need not have.
-    findings = [Finding(True, "drive", line, "as in the profile") for line in lines]
-    if not pulse:
-        return findings
-    with real_time():
-        parts = Parts(bench, drive, loop_port(bus, bench, drive), RealTimeClock(bench.period))
-        try:
-            parts.arm()
-            findings.append(Finding(True, "commissioning pulse", parts.pulse(), "within 30 %"))
-        except InputError as error:
-            findings.append(Finding(False, "commissioning pulse", str(error), "within 30 %"))
-        finally:
-            parts.rig.close()
-    disabled = parts.rig.disabled is True
-    said = "disabled" if disabled else "it did not say that it is disabled"
-    findings.append(Finding(disabled, "drive, at the end", said, "disabled"))
-    return findings
 
 
 def remember(name: str, bench: BenchSettings) -> str:

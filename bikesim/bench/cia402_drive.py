@@ -1,6 +1,7 @@
 """A CiA 402 drive in cyclic synchronous torque mode, as the loop has it."""
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from bikesim.bench.cia402 import (
@@ -12,6 +13,7 @@ from bikesim.bench.cia402 import (
     next_controlword,
     state_of,
 )
+from bikesim.bench.cia402_findings import Said, cia402_findings
 from bikesim.bench.cia402_frames import (
     SYNC,
     CobIds,
@@ -24,7 +26,8 @@ from bikesim.bench.cia402_frames import (
     unpack_status,
 )
 from bikesim.bench.cia402_settings import Cia402Settings
-from bikesim.bench.drive import DriveView
+from bikesim.bench.drive import Cyclic, DriveView
+from bikesim.bench.finding import Finding
 from bikesim.bench.frame import Frame
 
 if TYPE_CHECKING:
@@ -67,6 +70,8 @@ class Cia402Drive:
         self._next_heartbeat = -math.inf
         self._controlword = DISABLE_VOLTAGE
         self._state = State.UNKNOWN
+        self._statusword: int | None = None
+        self._rated: float | None = None
         self._mode = 0  # until it says
         self._torque = self._steer = self._steer_rate = 0.0
         self._heard = -math.inf
@@ -102,10 +107,12 @@ class Cia402Drive:
         from bikesim.bench.link import BusLink
 
         report = set_up(bus, self._settings)
+        self._rated = report.rated_torque
         silent = prove_watchdog(BusLink(bus), self._settings) if prove else None
         proven = f"disabled it {1e3 * silent:.0f} ms after the last heartbeat" if silent else ""
         return (
             f"{self.name}: {report.name or 'without a name'}, rated {report.rated_torque:g} N m",
+            *((report.fault,) if report.fault else ()),
             f"its watchdog {proven or 'was not tried'}",
             *(f"it has no {what}" for what in report.missing),
         )
@@ -158,6 +165,24 @@ class Cia402Drive:
         in_a_tick = (5, 0, 8, 7)  # RPDO1, SYNC, TPDO1, TPDO2
         return (*((size, 1 / period) for size in in_a_tick), (1, ours), (1, theirs))
 
+    def cyclic(self, period: float) -> tuple[Cyclic, ...]:
+        return (
+            Cyclic(self._cob.heartbeat, "heartbeat", 1 / self._settings.heartbeat_period),
+            Cyclic(self._cob.status, "status", 1 / period),
+            Cyclic(self._cob.motion, "motion", 1 / period),
+        )
+
+    def findings(self) -> Iterator[Finding]:
+        moved = self._motion.seen > -math.inf
+        said = Said(
+            self._nmt if self._heard > -math.inf else None,
+            self._statusword,
+            self._mode if moved else None,
+            self._last_error if moved else None,
+            self._rated,
+        )
+        return cia402_findings(self._settings, said)
+
     def view(self, time: float) -> DriveView:
         status, motion = self._status, self._motion
         return DriveView(
@@ -182,7 +207,7 @@ class Cia402Drive:
             self._error = f"{self.name} sends {len(data)} bytes where its status has 8"
             return
         self._status.take(time)
-        self._state = state_of(status.statusword)
+        self._statusword, self._state = status.statusword, state_of(status.statusword)
         if self._state is State.OPERATION_ENABLED and not self._armed:
             self._armed, self._error = True, ""
         self._torque = self._scale.torque(status.torque)

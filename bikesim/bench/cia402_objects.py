@@ -73,6 +73,8 @@ def _own_writes(drive: Cia402Settings) -> tuple[Write, ...]:
 def _standstill() -> Iterator[Write]:
     yield Write(0x6040, 0, DISABLE_VOLTAGE, "controlword")
     yield Write(0x6071, 0, 0, "target torque")
+    # Added to the target: one that is stored in the drive would act as soon as it is enabled.
+    yield Write(0x60B2, 0, 0, "torque offset", optional=True)
 
 
 def _supervision(drive: Cia402Settings) -> Iterator[Write]:

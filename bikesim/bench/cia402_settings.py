@@ -35,7 +35,8 @@ class Cia402Settings(Settings):
     kind: Literal["cia402"] = Field(default="cia402", description="Of drive.")
     node: _Node = Field(description="Node number on the bus.")
     eds: str = Field(
-        default="cia402_drive.eds", description="EDS: one that ships, or the path of a file."
+        default="cia402_drive.eds",
+        description="EDS: one that ships, or the path of a file, from the current folder.",
     )
     vendor_id: _Unsigned32 | None = Field(
         default=None, description="Object 1018:01 as it must be; default: not checked."

@@ -4,7 +4,6 @@ import logging
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from bikesim.bench.bus_errors import Unreadable, told
@@ -17,10 +16,11 @@ from bikesim.bench.cia402 import (
     State,
     state_of,
 )
+from bikesim.bench.cia402_eds import check_fits, read_eds
+from bikesim.bench.cia402_errors import error_told, found_in_fault
 from bikesim.bench.cia402_objects import Write, set_up_writes
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.rated_torque import check_rated_torque
-from bikesim.data import data_path
 from bikesim.errors import InputError
 
 if TYPE_CHECKING:
@@ -34,13 +34,17 @@ _PATIENCE = 0.5  # s, for a state that must come by itself
 
 
 class DriveReport(NamedTuple):
-    """What was found: the drive's name, its rated torque [N m], objects it does not have."""
+    """What was found: the drive's name, its rated torque [N m], objects it does not have.
+
+    `fault`: in which one it was and that it was reset, in words; empty if it was in none.
+    """
 
     name: str
     vendor_id: int
     product_code: int
     rated_torque: float
     missing: tuple[str, ...]
+    fault: str = ""
 
 
 def set_up(bus: "can.BusABC", drive: Cia402Settings) -> DriveReport:
@@ -76,23 +80,16 @@ def _node(
 
     # Else what it says of a time-out goes to the screen beside our own one line.
     logging.getLogger("canopen").addHandler(logging.NullHandler())
+    dictionary = read_eds(drive)
+    check_fits(dictionary, set_up_writes(drive), drive)
     network = canopen.Network(bus)
     network.notifier = can.Notifier(bus, [*network.listeners, unreadable], timeout=0.02)
     try:
-        node = network.add_node(drive.node, canopen.import_od(_eds(drive), drive.node))
+        node = network.add_node(drive.node, dictionary)
         node.sdo.MAX_RETRIES = 2  # pyright: ignore[reportAttributeAccessIssue]
         yield node
     finally:
         network.notifier.stop()
-
-
-def _eds(drive: Cia402Settings) -> str:
-    path = Path(drive.eds)
-    if path.name == drive.eds and not path.exists():
-        path = data_path("hardware", "can", drive.eds)
-    if not path.is_file():
-        raise InputError(f"drive.eds = {drive.eds!r}: there is no such file")
-    return str(path)
 
 
 def _who(drive: Cia402Settings) -> str:
@@ -117,13 +114,13 @@ class _SetUp:
             self._read(0x6076), self._drive.torque_unit, self._drive.rated_torque
         )
         self._check_encoder()
-        self._disable()
+        fault = self._disable()
         writes = set_up_writes(self._drive)
         for write in writes:
             self._write(write)
         self._verify(writes)
         self._start()
-        return DriveReport(name, vendor, product, rated, tuple(self._missing))
+        return DriveReport(name, vendor, product, rated, tuple(self._missing), fault)
 
     # Checks
 
@@ -164,27 +161,32 @@ class _SetUp:
                 f"the profile {self._drive.encoder_counts} in one"
             )
 
-    def _disable(self) -> None:
-        """To switch on disabled; a fault that is left from before is reset once."""
+    def _disable(self) -> str:
+        """To switch on disabled; a fault that is left from before is reset once, and told."""
         controlword = self._variable(0x6040, 0)
         controlword.raw = DISABLE_VOLTAGE
+        fault = ""
         if state_of(self._read(0x6041)) is State.FAULT:
+            fault = found_in_fault(self._read(0x603F))
             controlword.raw = FAULT_RESET
         deadline = time.monotonic() + _PATIENCE
         while (state := state_of(self._read(0x6041))) is not State.SWITCH_ON_DISABLED:
             if time.monotonic() > deadline:
-                error = self._read(0x603F)
-                raise self._error(f"stays in {state.told}, error {error:#06x} (603F)")
+                error = error_told(self._read(0x603F))
+                raise self._error(f"stays in {state.told}, error {error}")
             time.sleep(0.01)
+        return fault
 
     # Writing and reading
 
     def _read(self, index: int, subindex: int = 0) -> int:
-        from canopen import SdoAbortedError
+        from canopen import ObjectDictionaryError, SdoAbortedError
 
         where = f"{index:04X}:{subindex:02X}"
         try:
             value = self._variable(index, subindex).raw
+        except ObjectDictionaryError:
+            raise self._error(f"has {where} in another length than {self._drive.eds}") from None
         except SdoAbortedError as error:
             if error.code in _NO_SUCH_OBJECT:
                 raise _Absent(f"{_who(self._drive)}: has no {where}") from None
@@ -195,7 +197,8 @@ class _SetUp:
 
     def _variable(self, index: int, subindex: int) -> "SdoVariable":
         found = self._node.sdo.get_variable(index, subindex)
-        if found is None:
+        # Without subindices, an object is found under any.
+        if found is None or found.subindex != subindex:
             where = f"{index:04X}:{subindex:02X}"
             raise _Absent(f"{_who(self._drive)}: {self._drive.eds} has no {where}")
         return found

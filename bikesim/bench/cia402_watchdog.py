@@ -1,7 +1,8 @@
 """Proves that a CiA 402 drive disables itself when the host's heartbeat stops.
 
 What is written in object 1016 is a promise; only the drive's own reaction counts. It is enabled
-at zero torque, the host falls silent, and the drive must leave "operation enabled" in time.
+at zero torque, the host falls silent, and the drive must leave "operation enabled" in time. It is
+not enabled, or no longer, if it measures a torque all the same.
 """
 
 from bikesim.bench.cia402 import (
@@ -23,6 +24,7 @@ from bikesim.bench.cia402_frames import (
 from bikesim.bench.cia402_settings import Cia402Settings
 from bikesim.bench.frame import Frame
 from bikesim.bench.link import Link, until
+from bikesim.bench.rest_torque import check_rest_torque
 from bikesim.errors import InputError
 
 _PERIOD = 0.002  # s, between two of our cycles
@@ -35,7 +37,7 @@ def prove_watchdog(link: Link, drive: Cia402Settings) -> float:
     """How long after the last heartbeat the drive was no longer enabled [s].
 
     For a drive that is set up and disabled; it is disabled again, without a fault, afterwards.
-    Raises InputError if it stayed enabled, or could not be enabled.
+    Raises InputError if it stayed enabled, could not be enabled, or measured a torque (fault 25).
     """
     return _Proof(link, drive).run()
 
@@ -100,6 +102,8 @@ class _Proof:
         self._link.send(SYNC)
         for frame in until(self._link, self._link.now() + _PERIOD):
             if frame.id == self._ids.status and (status := unpack_status(frame.data)):
+                # Before its state is taken: nothing is enabled that has not been seen at rest.
+                check_rest_torque(self._drive.scale.torque(status.torque))
                 self._state = state_of(status.statusword)
 
     def _error(self, what: str) -> InputError:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from bikesim.bench.finding import Finding
 from bikesim.bench.frame import Frame
 
 if TYPE_CHECKING:
@@ -29,6 +30,14 @@ class DriveView(NamedTuple):
     torque: float
     steer: float
     steer_rate: float
+
+
+class Cyclic(NamedTuple):
+    """A message that a drive sends by itself or at each tick: identifier, name, `rate` [1/s]."""
+
+    id: int
+    name: str
+    rate: float
 
 
 class Drive(Protocol):
@@ -61,6 +70,10 @@ class Drive(Protocol):
         """Bytes of data and times a second of all its frames, at a loop `period` [s]."""
         ...
 
+    def cyclic(self, period: float) -> Iterable[Cyclic]:
+        """What it sends cyclically, at a loop `period` [s], while it is disabled too."""
+        ...
+
     def set_up(self, bus: "can.BusABC", *, prove: bool = True) -> tuple[str, ...]:
         """Checks it against its profile, sets it up and proves its watchdog; lines for a person.
 
@@ -88,6 +101,12 @@ class Drive(Protocol):
 
     def farewell(self) -> list[Frame]:
         """Zero torque and disabled."""
+        ...
+
+    def findings(self) -> Iterable[Finding]:
+        """State, mode, error and units for `bench check`: it was set up, is disabled, and all
+        that it sent since was received.
+        """
         ...
 
     def view(self, time: float) -> DriveView:

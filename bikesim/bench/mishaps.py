@@ -12,7 +12,7 @@ from bikesim.bench.plant import Plant
 from bikesim.settings import Settings
 from bikesim.textfile import located, read_toml
 
-_SENSORS = (0x110, 0x111, 0x120)
+_SENSORS = (0x110, 0x111, 0x113, 0x120)
 _ids = Annotated[tuple[int, ...], Strict(False)]
 
 

@@ -1,9 +1,11 @@
 """An ODrive in torque mode, as the loop has it."""
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from bikesim.bench.drive import DriveView
+from bikesim.bench.drive import Cyclic, DriveView
+from bikesim.bench.finding import Finding
 from bikesim.bench.frame import Frame
 from bikesim.bench.odrive import (
     AxisState,
@@ -20,6 +22,7 @@ from bikesim.bench.odrive import (
     unpack_heartbeat,
     unpack_torques,
 )
+from bikesim.bench.odrive_findings import Said, odrive_findings
 from bikesim.bench.odrive_settings import ODriveSettings
 
 if TYPE_CHECKING:
@@ -51,6 +54,7 @@ class ODrive:
         self._error = ""
         self._armed = False
         self._errors = 0
+        self._disarm_reason: int | None = None
 
     @property
     def name(self) -> str:
@@ -82,10 +86,11 @@ class ODrive:
         from bikesim.bench.odrive_setup import set_up
 
         report = set_up(link, self._settings, prove=prove)
+        fault = (f"{self.name}: {report.fault}",) if report.fault else ()
         if not prove:
-            return (f"{self.name}: its watchdog was not tried",)
+            return (*fault, f"{self.name}: its watchdog was not tried")
         within = f"within {1e3 * report.disarmed_after:.0f} ms of the last torque command"
-        return (f"{self.name}: its watchdog disarmed it {within}",)
+        return (*fault, f"{self.name}: its watchdog disarmed it {within}")
 
     def receive(self, frame: Frame, time: float) -> None:
         identifier, data = frame.id, frame.data
@@ -111,6 +116,7 @@ class ODrive:
             errors = unpack_errors(data)
             if errors is not None:
                 self._take_errors(errors.active)
+                self._disarm_reason = errors.disarm_reason
 
     def command(
         self, torque: float, *, enable: bool, on_time: bool = True
@@ -145,6 +151,22 @@ class ODrive:
     def farewell(self) -> list[Frame]:
         node = self._settings.node
         return [set_input_torque(node, 0.0), set_axis_state(node, AxisState.IDLE)]
+
+    def cyclic(self, period: float) -> tuple[Cyclic, ...]:
+        del period
+        s = self._settings
+        return (
+            Cyclic(self._heartbeat_id, "heartbeat", 1 / s.heartbeat_period),
+            Cyclic(self._estimates_id, "encoder", 1 / s.estimates_period),
+            Cyclic(self._torques_id, "torques", 1 / s.torques_period),
+        )
+
+    def findings(self) -> Iterator[Finding]:
+        heard = self._heard > -math.inf
+        said = Said(
+            self._state if heard else None, self._errors if heard else None, self._disarm_reason
+        )
+        return odrive_findings(self._settings, said)
 
     def view(self, time: float) -> DriveView:
         enabled = self._state == AxisState.CLOSED_LOOP_CONTROL

@@ -13,13 +13,16 @@ class ODriveSettings(Settings):
 
     Torque and speed limits are at the steer axis; the torque constant at the motor's shaft. The
     watchdog and the periods of the cyclic messages are set in the ODrive itself (by USB); the
-    set-up sees that they are as here.
+    set-up sees that they are as here. It knows no rated torque: limits.continuous_torque, the
+    motor's at the steer axis, is held against nothing.
     """
 
     table: ClassVar[str] = "drive"
 
     kind: Literal["odrive"] = Field(default="odrive", description="Of drive.")
-    node: Annotated[int, Field(ge=0, le=62)] = Field(description="Node number on the bus.")
+    node: Annotated[int, Field(ge=0, le=62)] = Field(
+        description="Node number on the bus; 8 and 9 are the sensor nodes' where there is one."
+    )
     torque_constant: Annotated[float, Field(ge=1e-3, le=100)] = Field(
         description="Of the motor [N m/A], as the ODrive has it."
     )

@@ -1,7 +1,7 @@
 """Sets an ODrive up over CANSimple, and proves its watchdog. It is idle before and after."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 from bikesim.bench.frame import Frame
@@ -18,9 +18,12 @@ from bikesim.bench.odrive import (
     set_input_torque,
     set_limits,
     set_torque_mode,
+    unpack_errors,
     unpack_heartbeat,
+    unpack_torques,
 )
 from bikesim.bench.odrive_settings import ODriveSettings
+from bikesim.bench.rest_torque import check_rest_torque
 from bikesim.errors import InputError
 
 _PATIENCE = 1.0  # s
@@ -36,16 +39,19 @@ class ODriveReport(NamedTuple):
 
     The ODrive tells with its heartbeat, so up to one of its periods later than it was; but it is
     disarmed before the heartbeat that comes 20 ms after the time-out.
+
+    `fault`: with which errors it was found, that are cleared now, in words; empty if with none.
     """
 
     disarmed_after: float
+    fault: str = ""
 
 
 def set_up(link: Link, drive: ODriveSettings, *, prove: bool = True) -> ODriveReport:
     """Clears errors, sets mode and limits, counts the cyclic messages, proves the watchdog.
 
-    Raises InputError; the torque is zero all the time and the axis idle at the end, without `prove`
-    all the time.
+    Raises InputError, so for an axis that measures a torque before it is told any (fault 25); the
+    torque is zero all the time and the axis idle at the end, without `prove` all the time.
     """
     return _SetUp(link, drive).run(prove)
 
@@ -54,23 +60,29 @@ class _SetUp:
     def __init__(self, link: Link, drive: ODriveSettings) -> None:
         self._link, self._drive, self._node = link, drive, drive.node
         self._heard = 0.0  # s, its newest heartbeat
+        self._at_rest = False  # from here on it must not measure a torque
 
     def run(self, prove: bool) -> ODriveReport:
         self._send(set_input_torque(self._node, 0.0))
         self._send(set_axis_state(self._node, AxisState.IDLE))
         self._expect(_is_idle, "does not become idle")
-        self._check_cyclic()
+        # Nothing is to be enabled that has not been seen at rest; calibrating enables nothing.
+        self._at_rest = prove
+        fault = self._check_cyclic()
         self._send(set_torque_mode(self._node))
         limits = self._drive.velocity_limit, self._drive.current_limit
         self._send(set_limits(self._node, *limits))
         try:
-            return ODriveReport(self._prove_watchdog() if prove else math.inf)
+            return ODriveReport(self._prove_watchdog() if prove else math.inf, fault)
         finally:
             self._send(set_axis_state(self._node, AxisState.IDLE))
             self._send(clear_errors(self._node))
 
-    def _check_cyclic(self) -> None:
-        """Each message comes as often as the profile says; listened to, not asked for."""
+    def _check_cyclic(self) -> str:
+        """Each message comes as often as the profile says; listened to, not asked for.
+
+        Gives the errors that they tell, see `ODriveReport`.
+        """
         wanted = {
             Command.HEARTBEAT: ("heartbeat", self._drive.heartbeat_period),
             Command.GET_ENCODER_ESTIMATES: ("encoder", self._drive.estimates_period),
@@ -78,7 +90,7 @@ class _SetUp:
         }
         slowest = max(period for _, period in wanted.values())
         duration = max(_LISTEN, 3 * slowest)
-        frames = until(self._link, self._link.now() + duration)
+        frames = tuple(self._frames(self._link.now() + duration))
         came = [frame.id for frame in frames]
         for command, (name, period) in wanted.items():
             count = came.count(message_id(self._node, command))
@@ -87,6 +99,19 @@ class _SetUp:
                     f"sent {count} {name} messages in {duration:g} s, the profile expects one "
                     f"every {1000 * period:g} ms: set {name}_msg_rate_ms in the ODrive"
                 )
+        return _found_with(self._errors(frames))
+
+    def _errors(self, frames: Iterable[Frame]) -> int:
+        """What is wrong, and what it was last disarmed by: the two bit by bit."""
+        errors = 0
+        for frame in frames:
+            if frame.id == message_id(self._node, Command.HEARTBEAT):
+                said = unpack_heartbeat(frame.data)
+                errors |= said.errors if said else 0
+            elif frame.id == message_id(self._node, Command.GET_ERROR):
+                told = unpack_errors(frame.data)
+                errors |= told.active | told.disarm_reason if told else 0
+        return errors
 
     def _prove_watchdog(self) -> float:
         """Enabled at zero torque, then silent: it must disarm, and say that it was for that."""
@@ -153,7 +178,7 @@ class _SetUp:
         self, wanted: Callable[[AxisHeartbeat], bool], deadline: float
     ) -> AxisHeartbeat | None:
         """The first that is wanted."""
-        for frame in until(self._link, deadline):
+        for frame in self._frames(deadline):
             if frame.id != message_id(self._node, Command.HEARTBEAT):
                 continue
             said = unpack_heartbeat(frame.data)
@@ -164,11 +189,26 @@ class _SetUp:
                 return said
         return None
 
+    def _frames(self, deadline: float) -> Iterator[Frame]:
+        for frame in until(self._link, deadline):
+            if self._at_rest and frame.id == message_id(self._node, Command.GET_TORQUES):
+                torques = unpack_torques(frame.data)
+                if torques is not None:
+                    check_rest_torque(self._drive.torque(torques.estimate))
+            yield frame
+
     def _send(self, frame: Frame) -> None:
         self._link.send(frame)
 
     def _error(self, what: str) -> InputError:
         return InputError(f"ODrive {self._node}: {what}")
+
+
+def _found_with(errors: int) -> str:
+    """A watchdog that has run out alone is how an ODrive waits for its host."""
+    if errors == AxisError.WATCHDOG_TIMER_EXPIRED:
+        return "its watchdog had run out, cleared now"
+    return f"it had failed: {errors_told(errors)}; cleared now" if errors else ""
 
 
 def _is_idle(said: AxisHeartbeat) -> bool:

@@ -1,12 +1,13 @@
 """The parts of a bench, and the bus that they are on: for what rides, checks and measures."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from bikesim.bench.arm import arm, listen
 from bikesim.bench.bus import BusPort, close_bus, filter_for, open_bus
+from bikesim.bench.calibration_check import NOT_CHECKED, check_calibration, link_to_node
 from bikesim.bench.drive import Drive
 from bikesim.bench.profile import BenchSettings
 from bikesim.bench.pulse import send_pulse
@@ -67,17 +68,28 @@ def make_bar(bench: BenchSettings, drive: Drive) -> Bar:
 
 @contextmanager
 def on_the_bus(
-    bench: BenchSettings, drive: Drive, say: Say = print, *, prove: bool = True
+    bench: BenchSettings,
+    drive: Drive,
+    say: Say = print,
+    *,
+    prove: bool = True,
+    plan: Iterable[str] = (),
 ) -> Iterator:
     """The profile's bus with the drive on it set up, disabled, its watchdog proven (see `Drive`).
 
-    Whoever is asked for is there and nobody else commands the drive. Raises InputError.
+    `plan`: lines that are said once everybody is there, and before the drive is touched.
+    Whoever is asked for is there and nobody else commands the drive; the sensor node has the
+    calibration of the profile. Raises InputError.
     """
     bar = make_bar(bench, drive)
     wheel = () if bench.wheel is None else (Wheel(bench.wheel),)
     bus = open_bus(bench.bus)
     try:
-        listen(bus, drive, bar, wheel)
+        listen(bus, drive, bar, wheel, enabling=prove)
+        if bench.bar.source == "node":
+            _check_node(bus, bench, say)
+        for line in plan:
+            say(line)
         filter_for(bus, drive.ids)
         for line in drive.set_up(bus, prove=prove):
             say(f"drive    {line}")
@@ -85,6 +97,14 @@ def on_the_bus(
         yield bus
     finally:
         close_bus(bus)
+
+
+def _check_node(bus: "can.BusABC", bench: BenchSettings, say: Say) -> None:
+    wanted = bench.bar.calibration
+    if wanted is None:
+        say(f"node     {NOT_CHECKED}")
+        return
+    check_calibration(link_to_node(bus), wanted)
 
 
 def loop_port(

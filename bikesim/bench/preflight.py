@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from bikesim.bench.bench_loop import bench_loop, cued_delay, cued_loops, not_judged
 from bikesim.bench.bus import bus_load
 from bikesim.bench.drive import Drive
+from bikesim.bench.faults import weaker
 from bikesim.bench.profile import BenchSettings
 from bikesim.errors import InputError
 from bikesim.experiment.run import scenario_bicycle
@@ -163,7 +164,7 @@ def _none(ready: Preflight) -> str:
     )
 
 
-def told(ready: Preflight, granted: Granted) -> list[str]:
+def told(ready: Preflight) -> list[str]:
     """What a ride will do, for the person who is about to hold the bar."""
     bench = ready.bench
     limits = bench.limits
@@ -174,10 +175,34 @@ def told(ready: Preflight, granted: Granted) -> list[str]:
         f"limits   {limits.torque:g} N m, {limits.torque_rate:g} N m/s, "
         f"{limits.continuous_torque:g} N m RMS, {bench.thresholds.trip_angle_deg:g} deg, "
         f"{bench.thresholds.trip_rate:g} rad/s",
+        _drive_limits(bench),
+        *_senses(bench),
+        *_weaker(bench),
         f"inertia  {_inertia(ready)}",
-        *_granted(granted),
     ]
     return lines
+
+
+def _drive_limits(bench: BenchSettings) -> str:
+    drive = bench.drive
+    return (
+        f"drive    told to keep to {drive.torque_limit:g} N m and {drive.speed_limit:g} rad/s "
+        f"at the bar; disables itself when the host is silent for {1e3 * drive.watchdog:g} ms"
+    )
+
+
+def _senses(bench: BenchSettings) -> list[str]:
+    if bench.bar.source == "node":
+        return []
+    return [
+        "NOT      rows 2 to 6 and 21 of the faults: steer is the drive's encoder, without a second "
+        "sensor; the host does not see the emergency stop"
+    ]
+
+
+def _weaker(bench: BenchSettings) -> list[str]:
+    found = weaker(bench.thresholds)
+    return [f"weaker   {', '.join(found)}; a real bench keeps the defaults"] if found else []
 
 
 def _margin(ready: Preflight) -> str:
@@ -203,7 +228,8 @@ def _inertia(ready: Preflight) -> str:
     )
 
 
-def _granted(granted: Granted) -> list[str]:
+def told_granted(granted: Granted) -> list[str]:
+    """What of real time the operating system grants a ride."""
     refused = [
         f"{name.replace('_', ' ')} refused ({why})"
         for name, why in zip(granted._fields, granted, strict=True)

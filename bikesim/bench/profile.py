@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, Strict, model_validator
 
 from bikesim.bench.bus import BusSettings
 from bikesim.bench.drives import DriveSettings
@@ -18,6 +18,9 @@ from bikesim.settings import Settings
 from bikesim.textfile import located, read_toml
 
 _Figure = Annotated[float, Field(ge=0, le=100)]
+_Count = Annotated[int, Field(ge=-(2**31) + 1, le=2**31 - 1)]
+_Calibration = Annotated[tuple[_Count, ...], Field(min_length=5, max_length=5), Strict(False)]
+_SENSOR_NODES = (8, 9)  # of an ODrive: node × 0x20 on are its identifiers
 
 
 class BarSettings(Settings):
@@ -42,6 +45,11 @@ class BarSettings(Settings):
     drive_zero: Annotated[float, Field(ge=-1e6, le=1e6)] = Field(
         default=0.0, description="What the drive's encoder says of a straight bar [rad]."
     )
+    calibration: _Calibration | None = Field(
+        default=None,
+        description="That the sensor node must have: zero and scale of potentiometer and gyro, "
+        "reference voltage, as it counts them; bench calibrate writes it. Default: not checked.",
+    )
     coupling: Annotated[float, Field(ge=0, le=0.95)] = Field(
         default=0.0,
         description="Virtual inertia, of the part of I_delta that the bar lacks; 0: none.",
@@ -54,7 +62,7 @@ class BenchSettings(Settings):
     description: str = Field(default="", description="What bench this is, and since when.")
     commissioned: str = Field(
         default="",
-        description="Which bar and drive passed the commissioning pulse: bench check --pulse.",
+        description="Which bus, bar and drive passed the commissioning pulse: bench check --pulse.",
     )
     period: Annotated[float, Field(ge=5e-4, le=0.02)] = Field(
         default=0.001, description="Of the loop [s]."
@@ -74,11 +82,19 @@ class BenchSettings(Settings):
     def commissioning(self) -> str:
         """What `commissioned` is once the pulse has proven signs, units and inertia as they are.
 
-        The calibration is not in it, as the sensor node has that: storing one clears the mark.
+        With `bar.calibration`, which the sensor node must have when a ride begins.
         """
+        bus = self.bus.model_dump(include={"interface", "channel", "arguments"})
         drive = self.drive.model_dump(exclude={"torque_limit", "speed_limit"})
-        proven = {"drive": drive, "inertia": self.bar.inertia, "source": self.bar.source}
-        return hashlib.sha256(json.dumps(proven, sort_keys=True).encode()).hexdigest()[:12]
+        proven = {
+            "bus": bus,
+            "drive": drive,
+            "inertia": self.bar.inertia,
+            "source": self.bar.source,
+            "calibration": self.bar.calibration,
+        }
+        text = json.dumps(proven, sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()[:12]
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -92,6 +108,8 @@ class BenchSettings(Settings):
                 f"limits.continuous_torque = {self.limits.continuous_torque} N m: is more than "
                 f"limits.torque = {self.limits.torque} N m"
             )
+        self._check_nameplate()
+        self._check_identifiers()
         if self.bar.source == "drive" and self.bar.delay < self.period:
             raise ValueError(
                 f"bar.delay = {self.bar.delay} s: is less than the period, {self.period} s, by "
@@ -112,6 +130,26 @@ class BenchSettings(Settings):
                 f"{t.trip_angle_deg} <= bar.steer_stop_deg = {self.bar.steer_stop_deg} must hold"
             )
         return self
+
+    def _check_nameplate(self) -> None:
+        """An ODrive knows no rating to hold the continuous torque against."""
+        if self.drive.kind != "cia402":
+            return
+        rated, wanted = self.drive.rated_torque * self.drive.gear, self.limits.continuous_torque
+        if wanted > rated * (1 + 1e-9):
+            raise ValueError(
+                f"limits.continuous_torque = {wanted} N m: is more than the nameplate's, "
+                f"drive.rated_torque × drive.gear = {rated:.4g} N m"
+            )
+
+    def _check_identifiers(self) -> None:
+        if self.drive.kind != "odrive" or self.drive.node not in _SENSOR_NODES:
+            return
+        if self.bar.source == "node" or self.wheel is not None:
+            raise ValueError(
+                f"drive.node = {self.drive.node}: has identifiers of the sensor nodes (0x100 to "
+                "0x13F), of which this bench has one; any other from 0 to 62 will do"
+            )
 
 
 def bench_names() -> tuple[str, ...]:

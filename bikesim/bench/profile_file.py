@@ -23,7 +23,7 @@ def own_profile(name: str) -> Path:
     return path
 
 
-Changes = Mapping[str, float | str]
+Changes = Mapping[str, float | str | list[int]]
 
 
 def changed_text(text: str, changes: Changes) -> str:

@@ -12,6 +12,7 @@ from bikesim.bench.emulated.cia402_drive import EmulatedDrive
 from bikesim.bench.emulated.device import Device
 from bikesim.bench.emulated.motor import Motor
 from bikesim.bench.emulated.steer_node import EmulatedSteerNode
+from bikesim.bench.faults import Thresholds
 from bikesim.bench.guard import CEILING
 from bikesim.bench.parts import Parts
 from bikesim.bench.preflight import Preflight
@@ -100,16 +101,23 @@ class _Nobody:
         """Nobody keeps it."""
 
 
+_WIDE = {
+    "ramp_in": 1e-6, "follow_error": 100.0, "slip_rate": 100.0, "bias_angle": 100.0,
+    "fall_roll_deg": 89.0,
+}  # fmt: skip
+
+
 def _wide() -> BenchSettings:
-    """A drive that can give what most recorded rigs gave, and thresholds that let it."""
+    """A drive that can give what most recorded rigs gave, and thresholds that let it.
+
+    No profile may have such ones; here nobody holds the bar.
+    """
+    thresholds = Thresholds().model_copy(update=_WIDE)
     keys = {
         "bus": {"interface": "virtual", "channel": "recorded"},
         "bar": {"inertia": 0.0427, "delay": 0.0},
         "limits": {"torque": CEILING, "torque_rate": 1e5, "continuous_torque": CEILING},
-        "thresholds": {
-            "ramp_in": 1e-6, "follow_error": 100.0, "slip_rate": 100.0, "bias_angle": 100.0,
-            "fall_roll_deg": 89.0,
-        },
+        "thresholds": thresholds,
         "drive": {
             "kind": "cia402", "node": 5, "rated_torque": 2.0, "torque_unit": "mNm", "gear": 5.0,
             "encoder_counts": 4096, "torque_limit": CEILING,

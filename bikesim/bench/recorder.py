@@ -5,6 +5,7 @@ import os
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -22,6 +23,7 @@ _TICKS = 10  # between two looks at what there is to write
 _PAUSE = 0.05  # s, at most; where there are no ticks
 _AT_ONCE = 50  # rows or frames, before the tick's thread is let in
 _MOST_WAITING = 5.0  # s of ticks, of which a disk that hangs takes none
+_PATIENCE = 2.0  # s, from one word of it to the next
 _ROW = 27
 
 
@@ -32,7 +34,14 @@ class ThreadedRecorder:
     written before is kept.
     """
 
-    def __init__(self, writer: RunWriter, frames: Path | None = None) -> None:
+    def __init__(
+        self,
+        writer: RunWriter,
+        frames: Path | None = None,
+        say: Callable[[str], object] = lambda line: None,
+    ) -> None:
+        """`say` is told when the end has to wait for a disk."""
+        self._say = say
         self._writer, self._path = writer, frames
         self._rows: deque[tuple[Real, ...]] = deque()
         self._frames: deque[tuple[can.Message, float | None]] = deque()
@@ -60,10 +69,24 @@ class ThreadedRecorder:
         self._frames.append((message, sent))
 
     def stop(self) -> None:
-        """Writes what is left. Once is enough."""
+        """Writes what is left. Once is enough.
+
+        Ctrl-C ends that where a disk hangs: the record is then left as it is, as a kill leaves it.
+        """
         self._done = True
         self._wake.set()
-        self._thread.join()
+        try:
+            self._thread.join(_PATIENCE)
+            while self._thread.is_alive():
+                self._say(
+                    f"waiting  for the disk: {len(self._rows)} ticks are not written yet (Ctrl-C: "
+                    "they are lost)"
+                )
+                self._thread.join(_PATIENCE)
+        except KeyboardInterrupt:
+            # Its thread may be in the middle of a write.
+            self._writer.abandon()
+            raise
 
     def finish(self, ending: Ending) -> None:
         """Stops, and says why the ride ended. Raises InputError if the record is not whole."""

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from bikesim.bench.display import Screen
 from bikesim.bench.drives import make_drive
 from bikesim.bench.guard import BenchGuard
 from bikesim.bench.monitors import Monitor
 from bikesim.bench.parts import Parts, Say, loop_port, on_the_bus
-from bikesim.bench.preflight import Preflight, check_margins, preflight, told
+from bikesim.bench.preflight import Preflight, check_margins, preflight, told, told_granted
 from bikesim.bench.profile import BenchSettings
 from bikesim.bench.recorder import ThreadedRecorder
 from bikesim.bench.rig import BENCH_CHANNELS
@@ -60,7 +61,7 @@ def check_order(order: Order) -> Preflight:
     check_margins(ready, told=order.without_margin)
     proven = bench.commissioned == bench.commissioning
     if not (proven or order.pulse or order.uncommissioned):
-        never = "its bar or drive changed since" if bench.commissioned else "it never passed"
+        never = "its bus, bar or drive changed since" if bench.commissioned else "it never passed"
         raise InputError(
             f"fault 22: {order.name}: {never} the commissioning pulse: bikesim bench check "
             f"{order.name} --pulse, hands off the bar (or --pulse, or --uncommissioned)"
@@ -68,10 +69,31 @@ def check_order(order: Order) -> Preflight:
     return ready
 
 
+class Ridden(NamedTuple):
+    """How a ride ended; `stopped`: whether somebody asked for that, whatever else happened.
+
+    `mean_square` [(N m)²]: of the torque lately, as the guard has it of the motor's warmth.
+    """
+
+    ending: Ending
+    stopped: bool
+    mean_square: float
+
+
 def ride_once(
-    order: Order, ready: Preflight, screen: Screen, output: Path, *, force: bool, say: Say
-) -> Ending:
-    """Arm, ramp in, ride, ramp out, disable; recorded in `output`. Raises InputError."""
+    order: Order,
+    ready: Preflight,
+    screen: Screen,
+    output: Path,
+    *,
+    force: bool,
+    say: Say,
+    mean_square: float = 0.0,
+) -> Ridden:
+    """Arm, ramp in, ride, ramp out, disable; recorded in `output`. Raises InputError.
+
+    `mean_square` [(N m)²]: of the motor's torque, of a ride before.
+    """
     bench = order.bench
     header = RunHeader(
         scenario=header_text(bench, order.scenario),
@@ -85,7 +107,7 @@ def ride_once(
     )
     drive = make_drive(bench.drive)
     with (
-        on_the_bus(bench, drive, say) as bus,
+        on_the_bus(bench, drive, say, plan=told(ready)) as bus,
         RunWriter(
             output,
             channels=(*TICK_CHANNELS, *BENCH_CHANNELS),
@@ -95,40 +117,46 @@ def ride_once(
             force=force,
         ) as writer,
     ):
-        recorder = ThreadedRecorder(writer, order.frames)
+        recorder = ThreadedRecorder(writer, order.frames, say)
         with real_time() as granted, recorder, _prompt_threads():
-            for line in told(ready, granted):
+            for line in told_granted(granted):
                 say(line)
             port = loop_port(bus, bench, drive, recorder.log)
             parts = Parts(bench, drive, port, RealTimeClock(bench.period))
             try:
-                ridden = Ride(order, ready, parts, recorder, [recorder.failed])
-                ending = _armed_ride(ridden, screen, say)
+                ride = Ride(order, ready, parts, recorder, [recorder.failed], mean_square)
+                ending, stopped = _armed_ride(ride, screen, say)
             finally:
                 parts.rig.close()
+                _warn(parts, say)
         recorder.finish(ending)
+    return Ridden(ending, stopped, ride.guard.mean_square)
+
+
+def _warn(parts: Parts, say: Say) -> None:
+    """Of a drive that may have power still, however the ride was left."""
     if parts.rig.disabled is not True:
-        say(f"WARNING  {drive.name} did not say that it is disabled: cut its power")
-    return ending
+        say(f"WARNING  {parts.drive.name} did not say that it is disabled: cut its power")
 
 
-def _armed_ride(ridden: "Ride", screen: Screen, say: Say) -> Ending:
+def _armed_ride(ride: "Ride", screen: Screen, say: Say) -> tuple[Ending, bool]:
     """Nothing here may take long: the drive listens for its host."""
-    parts, order = ridden.parts, ridden.order
+    parts, order = ride.parts, ride.order
     screen.say("the drive is being armed")
-    say(f"arming   {parts.drive.name}; its torque will ramp in over {ridden.ramp_in:g} s")
+    say(f"arming   {parts.drive.name}; its torque will ramp in over {ride.ramp_in:g} s")
     parts.arm()
     if order.pulse:
         screen.say("commissioning pulse: hands off the bar")
     pulse = parts.pulse() if order.pulse else None
     parts.rig.hooks = parts.rig.hooks._replace(show=screen.show)
-    stopping = Stopping(ridden.guard.ask_to_stop)
+    stopping = Stopping(ride.guard.ask_to_stop)
     with stopping.watching():
-        ending = ridden.go(stopping)
-    screen.say(ending.reason)
+        ending = ride.go(stopping)
+        # At once: a display must not show one that fell for as long as files take to close.
+        (screen.stand if ending.fell else screen.say)(ending.reason)
     if pulse is not None:
         say(pulse)
-    return ending
+    return ending, stopping.asked
 
 
 class Ride:
@@ -141,8 +169,9 @@ class Ride:
         parts: Parts,
         record: Recorder,
         more: Iterable[Monitor] = (),
+        mean_square: float = 0.0,
     ) -> None:
-        """`more` look for faults besides."""
+        """`more` look for faults besides; `mean_square` [(N m)²]: of the motor's torque before."""
         scenario, bench = order.scenario, order.bench
         self.order, self.parts = order, parts
         self.ramp_in = bench.thresholds.ramp_in
@@ -160,6 +189,7 @@ class Ride:
             observe=parts.rig.observation,
             end=scenario.duration - 0.5 * bench.period,
             more=[*wheel, *more],
+            mean_square=mean_square,
         )
         self._record, self._course, self._haptic = record, course, ready.haptic
         self._haptics = make_haptics(scenario.haptics, bench.period)

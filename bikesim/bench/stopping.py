@@ -23,6 +23,11 @@ class Stopping:
     def __call__(self) -> bool:
         return self._at_once
 
+    @property
+    def asked(self) -> bool:
+        """Whether anybody wanted it to stop."""
+        return self._first is not None
+
     @contextmanager
     def watching(self) -> Iterator["Stopping"]:
         """Takes the signals for as long as a ride lasts."""

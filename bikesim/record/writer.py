@@ -94,6 +94,10 @@ class RunWriter:
         finally:
             self._end()
 
+    def abandon(self) -> None:
+        """Nothing is written any more; what was is kept, and opens as after a kill."""
+        self._closed = True
+
     def __enter__(self) -> Self:
         return self
 

@@ -15,6 +15,7 @@ from typing import Any
 from bikesim.bench.cia402 import State
 from bikesim.bench.display import ScreenReader, screen_name
 from bikesim.bench.emulated.cia402_drive import EmulatedDrive
+from bikesim.bench.emulated.odrive import EmulatedODrive
 from bikesim.bench.mishaps import Mishap
 from bikesim.bench.odrive import AxisState
 from bikesim.bench.plant import Plant
@@ -234,4 +235,5 @@ class _Once(Bench):
 def _enabled(plant: Plant) -> bool:
     if isinstance(plant.drive, EmulatedDrive):
         return plant.drive.state is State.OPERATION_ENABLED
+    assert isinstance(plant.drive, EmulatedODrive)
     return plant.drive.state is AxisState.CLOSED_LOOP_CONTROL

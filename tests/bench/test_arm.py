@@ -127,7 +127,15 @@ def test_what_would_end_a_ride_is_there_at_rest(
 class TestListening:
     """On a bus, before anything is sent."""
 
-    def heard(self, wire: Wire, *frames: Frame, wheel: bool = False, error: bool = False) -> None:
+    def heard(
+        self,
+        wire: Wire,
+        *frames: Frame,
+        wheel: bool = False,
+        error: bool = False,
+        node: EmulatedSteerNode | None = None,
+        enabling: bool = True,
+    ) -> None:
         settings = profile()
         drive = make_drive(settings.drive)
         others = (Wheel(WheelSettings(radius=0.3)),) if wheel else ()
@@ -138,6 +146,8 @@ class TestListening:
                 while not stop.is_set():
                     for frame in frames:
                         theirs.send(to_message(frame))
+                    for frame in () if node is None else node.advance(time.monotonic()):
+                        theirs.send(to_message(frame))
                     if error:
                         theirs.send(can.Message(is_error_frame=True, is_extended_id=False))
                     time.sleep(0.01)
@@ -146,7 +156,7 @@ class TestListening:
         with wire.host() as ours:
             sender.start()
             try:
-                listen(ours, drive, make_bar(settings, drive), others)
+                listen(ours, drive, make_bar(settings, drive), others, enabling=enabling)
             finally:
                 stop.set()
                 sender.join()
@@ -174,3 +184,15 @@ class TestListening:
     def test_another_host(self, wire: Wire, command: int):
         with pytest.raises(InputError, match=f"fault 24: somebody else sends {command:#05x}"):
             self.heard(wire, Frame(0x110, bytes(8)), Frame(command, bytes(5)))
+
+    def test_the_emergency_stop_is_open_and_the_drive_without_power(self, wire: Wire):
+        """Said before the drive is asked, which could not answer; but not where it stays off."""
+        node = EmulatedSteerNode()
+        node.estop_closed = False
+        with pytest.raises(InputError) as error:
+            self.heard(wire, node=node)
+        assert str(error.value) == "fault 21: the emergency stop is open: close it first"
+        self.heard(wire, node=node, enabling=False)
+
+    def test_the_emergency_stop_is_closed(self, wire: Wire):
+        self.heard(wire, node=EmulatedSteerNode())

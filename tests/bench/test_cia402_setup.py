@@ -6,6 +6,7 @@ import canopen
 import pytest
 
 from bikesim.bench.cia402 import NmtState, State
+from bikesim.bench.cia402_drive import Cia402Drive
 from bikesim.bench.cia402_frames import (
     SYNC,
     CobIds,
@@ -25,6 +26,7 @@ from bikesim.errors import InputError
 from .conftest import Wire, variable
 
 # The emulated drive has two RPDOs and three TPDOs, of four each.
+ABSENT = (0x6007, 0x605E, 0x605A, 0x1029, 0x608F, 0x60B2)
 MISSING_PDOS = ("1402:01 (RPDO3", "1403:01 (RPDO4", "1803:01 (TPDO4")
 
 
@@ -113,15 +115,52 @@ def test_a_second_time_and_after_a_fault_it_is_set_up_again(wire: Wire, drive: C
     device = emulated(drive)
     with wire.with_devices(device) as bus:
         first = set_up(bus, drive)
+        assert first.fault == ""
         device.fail(0x2310, 0.0)
-        assert set_up(bus, drive) == first
+        again = set_up(bus, drive)
+        assert again == first._replace(fault="it was in fault 0x2310 (over current), reset now")
     assert device.state is State.SWITCH_ON_DISABLED
 
 
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (0x8130, "its host had gone (error 0x8130), reset now"),
+        (0x7121, "it was in fault 0x7121 (motor blocked), reset now"),
+        (0x4299, "it was in fault 0x4299 (device temperature), reset now"),  # a class of CiA 301
+        (0xA000, "it was in fault 0xa000, reset now"),
+    ],
+    ids=str,
+)
+def test_a_fault_in_which_it_is_found_is_told(
+    wire: Wire, drive: Cia402Settings, error: int, told: str
+):
+    device = emulated(drive)
+    device.fail(error, 0.0)
+    with wire.with_devices(device) as bus:
+        lines = Cia402Drive(drive).set_up(bus, prove=False)
+    assert told in lines
+    assert device.state is State.SWITCH_ON_DISABLED
+
+
+def test_a_torque_offset_that_is_stored_in_it_is_undone(wire: Wire, drive: Cia402Settings):
+    device = emulated(drive)
+    device.objects.set(0x60B2, 0, 250)
+    set_up_one(wire, device, drive)
+    enabled(device, drive, 0)
+    assert (device.objects.get(0x60B2), device.torque) == (0, 0.0)
+
+
+def test_a_torque_offset_of_the_profile_is_refused(drive: Cia402Settings):
+    offset = {"index": 0x60B2, "value": 100}
+    with pytest.raises(InputError, match=r"60B2:00 \(torque offset\) is the set-up's own"):
+        Cia402Settings.model_validate(drive.model_dump() | {"objects": [offset]})
+
+
 def test_a_drive_without_what_it_need_not_have(wire: Wire, drive: Cia402Settings):
-    device = emulated(drive, without=(0x6007, 0x605E, 0x605A, 0x1029, 0x608F, 0x1401, 0x1802))
+    device = emulated(drive, without=(*ABSENT, 0x1401, 0x1802))
     report = set_up_one(wire, device, drive)
-    assert {name[:4] for name in report.missing} >= {"608F", "1029", "6007", "605E", "605A"}
+    assert {int(name[:4], 16) for name in report.missing} >= {*ABSENT}
 
 
 @pytest.mark.parametrize("index", [0x1016, 0x6072, 0x6080, 0x1801])
@@ -156,7 +195,10 @@ def changed(index: int, subindex: int, value: int) -> Callable[[EmulatedDrive], 
         (changed(0x1000, 0, 0x191), "is no CiA 402 drive"),
         (changed(0x6502, 0, 0x1FF), "no cyclic synchronous torque mode"),
         (changed(0x1018, 1, 7), "has vendor_id 0x7, the profile 0x9"),
-        (lambda d: d.fail(0x3210, 0.0, remains=True), "stays in fault, error 0x3210"),
+        (
+            lambda d: d.fail(0x3210, 0.0, remains=True),
+            "stays in fault, error 0x3210 (DC link over-voltage)",
+        ),
     ],
 )
 def test_a_drive_that_is_not_as_it_should_be(

@@ -27,8 +27,13 @@ from .conftest import Wire
 
 
 def ready(drive: Cia402Settings, but: tuple[Write, ...] = ()) -> EmulatedDrive:
-    """Set up as it should be, `but` for some objects; operational."""
-    device = EmulatedDrive(drive.node, Motor.of_profile(drive))
+    return set_up_as_it_should_be(EmulatedDrive(drive.node, Motor.of_profile(drive)), drive, but)
+
+
+def set_up_as_it_should_be(
+    device: EmulatedDrive, drive: Cia402Settings, but: tuple[Write, ...] = ()
+) -> EmulatedDrive:
+    """`But` for some objects; operational."""
     device.advance(0.0)
     for write in (*set_up_writes(drive), *but):
         if (write.index, write.subindex) in device.objects:
@@ -68,6 +73,45 @@ def test_a_drive_that_cannot_be_enabled(drive: Cia402Settings):
     device.fail(0x3210, 0.0, remains=True)
     with pytest.raises(InputError, match="stays in fault, should be operation enabled"):
         prove_watchdog(SimulatedLink([device]), drive)
+
+
+class Watched(EmulatedDrive):
+    """Keeps for how many frames it was enabled."""
+
+    enabled = 0
+
+    def receive(self, frame: Frame, time: float) -> list[Frame]:
+        sent = super().receive(frame, time)
+        self.enabled += self.state is State.OPERATION_ENABLED
+        return sent
+
+
+def at_rest_refused(device: EmulatedDrive, drive: Cia402Settings, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        prove_watchdog(SimulatedLink([set_up_as_it_should_be(device, drive)]), drive)
+    assert device.state is State.SWITCH_ON_DISABLED
+    assert device.torque == 0.0
+
+
+def test_a_drive_that_measures_a_torque_is_not_enabled(drive: Cia402Settings):
+    device = Watched(drive.node, Motor.of_profile(drive))
+    device.offset = -0.11 / drive.gear
+    at_rest_refused(device, drive, r"fault 25: the drive measures -0\.11 N m before it is told any")
+    assert device.enabled == 0
+
+
+def test_the_torque_of_noise_is_allowed(drive: Cia402Settings):
+    device = ready(drive)
+    device.offset = 0.09 / drive.gear
+    assert prove_watchdog(SimulatedLink([device]), drive) > 0.030
+
+
+def test_an_offset_that_nobody_could_undo_is_disabled_at_once(drive: Cia402Settings):
+    """250 per mille of 0.386 N m, at 5.5 turns for one; 60B2 cannot be reached."""
+    device = Watched(drive.node, Motor.of_profile(drive), without=(0x60B2,))
+    device.objects.set(0x60B2, 0, 250)
+    at_rest_refused(device, drive, r"fault 25: the drive measures \+0\.53 N m .* allowed 0\.1 N m")
+    assert 0 < device.enabled <= 4  # of one cycle: heartbeat, command, SYNC
 
 
 def test_a_drive_that_is_not_there(drive: Cia402Settings):

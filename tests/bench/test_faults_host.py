@@ -139,6 +139,27 @@ def test_row_23_the_rider_fell():
     safe(bench)
 
 
+def test_row_23_a_bar_that_turns_far_while_one_falls_is_of_the_fall():
+    """Whoever falls lets go: at once zero, and it is a fall all the same."""
+    bench = LockStep(
+        profile(thresholds={"ramp_in": 0.05, "ramp_out": 0.4, "fall_roll_deg": 15.0}),
+        leaning(speed=2.0, duration=10.0),
+    )
+
+    def thrown(since: float) -> None:
+        assert bench.guard is not None
+        if bench.guard.fault is not None:
+            bench.plant.bar.data.qvel[0] = 9.0
+
+    ending = ridden(bench, thrown)
+    assert ending.fell
+    assert ending.reason == "fell to the right: roll beyond 15 deg"
+    assert bench.guard is not None
+    assert {fault.row for fault in bench.guard.seen} & {7, 8, 9}
+    assert zeroed_at_once(bench)
+    safe(bench)
+
+
 def test_row_24_a_second_master(bench: LockStep):
     command = 0x205 if bench.bench.drive.kind == "cia402" else 3 << 5 | 0x0E
 

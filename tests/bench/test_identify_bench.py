@@ -49,7 +49,8 @@ def test_a_bench_that_is_not_what_its_profile_says(drive: str):
 def test_signs_and_units_are_proven_with_less_torque(drive: str, wrong: dict, told: str):
     """The gear is 5.5 and 4 in truth: a motor that gives so many times what is commanded."""
     real = profile(DRIVES[drive], bar=BAR)
-    here = LockStep(profile({**DRIVES[drive], **wrong}, bar=BAR), Scenario(), real=real)
+    as_told = profile({**DRIVES[drive], **wrong}, bar=BAR, limits={"continuous_torque": 0.3})
+    here = LockStep(as_told, Scenario(), real=real)
     here.parts.arm()
     with pytest.raises(InputError, match=told):
         excite_armed(here.parts, Excitation(0.5, 6.0, 0.2))

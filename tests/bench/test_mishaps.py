@@ -8,6 +8,7 @@ import pytest
 
 from bikesim.bench.cia402 import State
 from bikesim.bench.emulated.cia402_drive import EmulatedDrive
+from bikesim.bench.emulated.odrive import EmulatedODrive
 from bikesim.bench.frame import Frame
 from bikesim.bench.mishaps import Mishap, Mishaps, read_mishaps
 from bikesim.bench.odrive import AxisState
@@ -65,9 +66,20 @@ def test_a_bench_is_well_again_when_the_ride_is_over(bench: LockStep):
         assert state(bench.plant, mishaps) == before, kind
 
 
+@pytest.mark.parametrize("frame_id", [0x110, 0x111, 0x113, 0x120])
+def test_a_silent_drive_leaves_the_sensors_their_voice(bench: LockStep, frame_id: int):
+    """Answers about the calibration too."""
+    mishaps = Mishaps(bench.plant, [Mishap(kind="silence")])
+    mishaps.happen(None)
+    frame = Frame(frame_id, bytes(8))
+    assert list(mishaps.pass_to_host(frame)) == [frame]
+    assert list(mishaps.pass_to_host(Frame(0x185, bytes(8)))) == []
+
+
 def state(plant: Plant, mishaps: Mishaps) -> tuple[object, ...]:
     """Of everything that a mishap changes."""
     node, drive = plant.node, plant.drive
+    assert isinstance(drive, EmulatedDrive | EmulatedODrive)
     mode = drive._stuck_mode if isinstance(drive, EmulatedDrive) else drive._modes
     sent = [Frame(0x110, bytes(8)), Frame(0x110, bytes((1, *bytes(7)))), Frame(0x185, bytes(8))]
     return (
@@ -81,5 +93,7 @@ def test_a_drive_that_is_disabled_by_itself(bench: LockStep):
     bench.arm()
     assert bench.parts.rig.drive_view.enabled
     Mishaps(bench.plant, [Mishap(kind="disable")]).happen(None)
-    assert bench.plant.drive.state in (State.SWITCH_ON_DISABLED, AxisState.IDLE)
+    drive = bench.plant.drive
+    assert isinstance(drive, EmulatedDrive | EmulatedODrive)
+    assert drive.state in (State.SWITCH_ON_DISABLED, AxisState.IDLE)
     bench.parts.rig.close()

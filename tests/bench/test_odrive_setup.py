@@ -8,6 +8,7 @@ from bikesim.bench.emulated.odrive import EmulatedODrive, ODriveConfiguration
 from bikesim.bench.frame import Frame
 from bikesim.bench.link import BusLink
 from bikesim.bench.odrive import AxisError, AxisState, set_axis_state, set_input_torque
+from bikesim.bench.odrive_drive import ODrive
 from bikesim.bench.odrive_settings import ODriveSettings
 from bikesim.bench.odrive_setup import set_up
 from bikesim.errors import InputError
@@ -24,6 +25,7 @@ def test_what_it_leaves(odrive: ODriveSettings, feeds: bool):
     device = emulated(odrive, any_frame_feeds=feeds)
     report = set_up(SimulatedLink([device]), odrive)
     assert 0.030 < report.disarmed_after <= 0.030 + 0.010 + 0.003
+    assert report.fault == "its watchdog had run out, cleared now"
     assert (device.state, device.errors, device.torque) == (AxisState.IDLE, 0, 0.0)
     now = 1000.0
     device.receive(set_input_torque(3, 9.0), now)
@@ -109,6 +111,58 @@ def test_a_slow_watchdog_is_not_hidden_by_slow_heartbeats(
 )
 def test_messages_that_do_not_come_are_named(odrive: ODriveSettings, changes: dict, told: str):
     assert told in refused(emulated(odrive, **changes), odrive)
+
+
+def test_a_torque_at_rest_is_refused_before_it_is_enabled(odrive: ODriveSettings):
+    class Watched(EmulatedODrive):
+        def receive(self, frame: Frame, time: float) -> list[Frame]:
+            sent = super().receive(frame, time)
+            assert self.state is AxisState.IDLE
+            return sent
+
+    device = Watched(3, ODriveConfiguration.of_profile(odrive))
+    device.offset = 0.11 / odrive.gear
+    told = refused(device, odrive)
+    assert told == ("fault 25: the drive measures +0.11 N m before it is told any; allowed 0.1 N m")
+
+
+def test_the_torque_of_noise_is_allowed(odrive: ODriveSettings):
+    device = emulated(odrive)
+    device.offset = 0.09 / odrive.gear
+    assert set_up(SimulatedLink([device]), odrive).disarmed_after < math.inf
+
+
+def test_a_torque_of_its_own_once_it_is_enabled_ends_in_idle_at_once(odrive: ODriveSettings):
+    class Pulling(EmulatedODrive):
+        pulled = 0
+
+        def advance(self, time: float) -> list[Frame]:
+            enabled = self.state is AxisState.CLOSED_LOOP_CONTROL
+            self.offset = -0.5 if enabled else 0.0
+            self.pulled += enabled
+            return super().advance(time)
+
+    device = Pulling(3, ODriveConfiguration.of_profile(odrive))
+    assert refused(device, odrive).startswith("fault 25: the drive measures -2.00 N m")
+    assert device.pulled <= 2  # ms: its torque comes every two
+
+
+@pytest.mark.parametrize("still", [True, False])
+def test_what_it_had_failed_with_is_told(odrive: ODriveSettings, still: bool):
+    """Over current while it rode: told at the next start, not at the one after.
+
+    Also where it has no error any more, but knows what it was disarmed by.
+    """
+    device = emulated(odrive)
+    link = SimulatedLink([device])
+    set_up(link, odrive)
+    device.receive(set_input_torque(3, 0.0), link.now())
+    device.receive(set_axis_state(3, AxisState.CLOSED_LOOP_CONTROL), link.now())
+    device.break_down()
+    device.errors *= still
+    lines = ODrive(odrive).set_up_over(link)
+    assert lines[0].startswith("ODrive 3: it had failed: dc bus over current")
+    assert set_up(link, odrive).fault == "its watchdog had run out, cleared now"
 
 
 class Broken(EmulatedODrive):

@@ -9,9 +9,8 @@ from bikesim.bench.preflight import Preflight, check_margins, preflight, told
 from bikesim.bench.scenario import bench_scenario
 from bikesim.errors import InputError
 from bikesim.experiment.scenario import Scenario
-from bikesim.realtime import Granted
 
-from .lockstep import profile
+from .lockstep import CIA402, ODRIVE, profile
 
 
 def ready(bar: dict | None = None, *, wheel: bool = False, **scenario: Any) -> Preflight:
@@ -59,8 +58,7 @@ def test_a_cue_without_is_to_be_wanted_twice(haptics: dict, why: str):
         assert why in str(error.value)
         assert "--without-margin, given twice" in str(error.value)
     check_margins(found, told=2)
-    (margin,) = (one for one in told(found, Granted(*([None] * len(Granted._fields))))
-                 if one.startswith("margin"))  # fmt: skip
+    (margin,) = (one for one in told(found) if one.startswith("margin"))
     assert why in margin
 
 
@@ -81,3 +79,36 @@ def test_with_a_speed_sensor_every_speed_counts():
     standing = ready(wheel=True)
     check_margins(standing, told=0)
     assert min(one.speed for one in standing.margins) == 0.0
+
+
+def line(found: Preflight, begin: str) -> str:
+    (one,) = (one for one in told(found) if one.startswith(begin))
+    return one
+
+
+def test_weaker_thresholds_are_one_line():
+    assert not any(one.startswith("weaker") for one in told(ready()))
+    bench = profile(thresholds={"zero_age": 0.06, "drive_age": 0.06})
+    scenario = bench_scenario(bench, Scenario())
+    assert line(preflight(bench, scenario, make_drive(bench.drive)), "weaker") == (
+        "weaker   zero_age 60 ms (20), drive_age 60 ms (5); a real bench keeps the defaults"
+    )
+
+
+@pytest.mark.parametrize(
+    ("drive", "watchdog"), [(CIA402, "heartbeat_timeout"), (ODRIVE, "watchdog_timeout")]
+)
+def test_what_the_drive_keeps_to_by_itself(drive: dict, watchdog: str):
+    bench = profile({**drive, "torque_limit": 3.58, "speed_limit": 7.0, watchdog: 0.04})
+    found = preflight(bench, bench_scenario(bench, Scenario()), make_drive(bench.drive))
+    assert line(found, "drive") == (
+        "drive    told to keep to 3.58 N m and 7 rad/s at the bar; disables itself when the host "
+        "is silent for 40 ms"
+    )
+
+
+def test_what_is_not_watched_without_a_sensor_node():
+    assert not any(one.startswith("NOT") for one in told(ready()))
+    said = line(ready({"source": "drive"}), "NOT")
+    assert "rows 2 to 6 and 21 of the faults" in said
+    assert "without a second sensor; the host does not see the emergency stop" in said

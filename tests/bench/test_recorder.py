@@ -7,6 +7,7 @@ import can
 import pytest
 
 from bikesim import bicycles
+from bikesim.bench import recorder as recorder_module
 from bikesim.bench.faults import Observation, Reaction
 from bikesim.bench.recorder import ThreadedRecorder
 from bikesim.bench.rig import BENCH_CHANNELS
@@ -107,6 +108,9 @@ class HangingDisk:
     def finish(self, ending: Ending) -> None:
         self._record.finish(ending)
 
+    def abandon(self) -> None:
+        self._record.abandon()
+
 
 def test_a_full_disk_is_a_fault_that_ramps_out_and_what_is_written_is_kept(tmp_path: Path):
     full: Any = FullDisk(record := writer(tmp_path / "run.h5"))
@@ -149,6 +153,34 @@ def test_a_disk_that_hangs_is_a_fault_and_nothing_is_lost(tmp_path: Path):
         assert recorder.failed(at(6.0)) is None
         recorder.finish(Ending("end of run"))
     assert open_run(tmp_path / "run.h5").ticks == 6000
+
+
+def test_ctrl_c_while_a_disk_hangs_keeps_what_was_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    hangs, goes_on = threading.Event(), threading.Event()
+    said: list[str] = []
+
+    def tell(line: str) -> None:
+        said.append(line)
+        raise KeyboardInterrupt  # as whoever reads it does
+
+    def ridden() -> None:
+        with writer(tmp_path / "run.h5") as record:
+            for tick in range(1200):
+                record.append(row(tick))
+            disk: Any = HangingDisk(record, hangs, goes_on)
+            with ThreadedRecorder(disk, say=tell) as recorder:
+                for tick in range(1200, 1300):
+                    recorder.append(row(tick))
+                assert hangs.wait(30)
+
+    monkeypatch.setattr(recorder_module, "_PATIENCE", 0.05)
+    with pytest.raises(KeyboardInterrupt):
+        ridden()
+    goes_on.set()
+    assert "for the disk: " in said[0]
+    assert 1000 <= open_run(tmp_path / "run.h5").ticks <= 1200
 
 
 def test_frames_that_have_no_place_are_a_fault_too(tmp_path: Path):

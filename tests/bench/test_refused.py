@@ -3,6 +3,7 @@
 import math
 import time
 import tomllib
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import can
@@ -11,6 +12,7 @@ import tomli_w
 
 from bikesim.bench import calibrate_bench
 from bikesim.bench.calibration import NodeCalibration
+from bikesim.bench.calibration_kept import keep_calibration
 from bikesim.bench.cia402 import State
 from bikesim.bench.cia402_frames import DriveCommand, pack_command
 from bikesim.bench.cia402_settings import Cia402Settings
@@ -20,7 +22,7 @@ from bikesim.bench.emulated.link import SimulatedLink
 from bikesim.bench.emulated.motor import Motor
 from bikesim.bench.emulated.steer_node import USUAL_CALIBRATION, EmulatedSteerNode
 from bikesim.bench.frame import Frame
-from bikesim.bench.profile import load_bench
+from bikesim.bench.profile import BenchSettings, load_bench
 from bikesim.cli.bench import calibrate as calibrate_command
 from bikesim.cli.main import main
 
@@ -60,6 +62,9 @@ class Desk:
         }
         self.path.write_text(tomli_w.dumps(tables))
 
+    def on_the_bus(self, *devices: Device) -> AbstractContextManager[can.BusABC]:
+        return self._wire.with_devices(*devices)
+
     def refused(self, *arguments: str, devices: tuple[Device, ...]) -> str:
         """The line with which a command is refused."""
         with can.Bus(interface="virtual", channel=self._wire.name) as tap:
@@ -98,6 +103,17 @@ def test_two_masters(desk: Desk, command: tuple[str, ...], monkeypatch):
     assert "fault 24: somebody else sends 0x205, which is this host's to send" in said
 
 
+@pytest.mark.parametrize("command", [RUN, ("identify", "bench.toml")], ids=lambda one: one[0])
+def test_the_emergency_stop_is_open_so_the_drive_has_no_power(
+    desk: Desk, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("bikesim.cli.bench.identify.ask", lambda question: "")
+    node = EmulatedSteerNode()
+    node.estop_closed = False
+    said = desk.refused(*command, devices=(node,))
+    assert said == "bikesim: fault 21: the emergency stop is open: close it first\n"
+
+
 def test_units_that_contradict_the_nameplate(desk: Desk):
     desk.write(torque_unit="mNm")
     said = desk.refused(*RUN, devices=(EmulatedSteerNode(), drive()))
@@ -109,6 +125,29 @@ def test_an_encoder_that_contradicts_the_profile(desk: Desk):
     said = desk.refused(*RUN, devices=(EmulatedSteerNode(), drive()))
     assert "4096" in said
     assert "8192" in said
+
+
+def test_a_node_with_another_calibration(desk: Desk):
+    """As one that was replaced: nothing is sent to the drive, not even its set-up."""
+    desk.write(bar={"calibration": list(USUAL_CALIBRATION.counts())})
+    mirrored = USUAL_CALIBRATION._replace(angle_scale=-5.76)
+    device = Watched(Cia402Settings(**CIA402))
+    said = desk.refused(*RUN, devices=(EmulatedSteerNode(stored=mirrored), device))
+    assert "fault 22: the sensor node's calibration is not this profile's: angle scale" in said
+    assert device.heard == {0x112}
+
+
+@pytest.mark.parametrize("key", [True, False], ids=["checked", "not checked"])
+def test_a_node_with_the_calibration_of_the_profile_or_of_none(desk: Desk, key: bool, capsys):
+    """Refused for another cause, which comes later."""
+    bar = {"calibration": list(USUAL_CALIBRATION.counts())} if key else {}
+    desk.write(bar=bar, torque_unit="mNm")
+    with desk.on_the_bus(EmulatedSteerNode(), drive()):
+        assert main(["bench", *RUN]) == 2
+    said = capsys.readouterr()
+    assert "its unit is uNm" in said.err
+    told = "node     its calibration is not checked: the profile has no bar.calibration"
+    assert (told in said.out) is not key
 
 
 def test_no_drive_where_only_the_drive_would_speak(desk: Desk):
@@ -141,10 +180,12 @@ class TestCalibration:
     @pytest.fixture
     def node(self, monkeypatch: pytest.MonkeyPatch, wire: Wire) -> HandledBar:
         node = HandledBar(noise=2e-4)
-        bus = can.Bus(interface="virtual", channel=wire.name)
-        monkeypatch.setattr(
-            calibrate_bench, "on_node_bus", lambda bench: (bus, SimulatedLink([node]))
-        )
+        link = SimulatedLink([node])
+
+        def bus(bench: BenchSettings) -> tuple[can.BusABC, SimulatedLink]:
+            return can.Bus(interface="virtual", channel=wire.name), link
+
+        monkeypatch.setattr(calibrate_bench, "on_node_bus", bus)
         return node
 
     @pytest.mark.parametrize(
@@ -170,9 +211,39 @@ class TestCalibration:
         assert node.stored is not None
         assert node.stored.angle_scale == pytest.approx(node.sensors.angle_scale, rel=2e-3)
         (kept,) = desk.path.parent.glob("*.node.*.bak")
-        assert load_bench(str(desk.path)).commissioned == ""
+        after = load_bench(str(desk.path))
+        assert after.commissioned == ""
+        assert after.bar.calibration == node.stored.counts()
         old = tomllib.loads(kept.read_text())
         assert NodeCalibration(**old) == pytest.approx(USUAL_CALIBRATION, abs=1e-4)
+
+    def test_the_old_one_is_put_back(self, desk: Desk, node: HandledBar, monkeypatch):
+        """By its file; with the key, and without the mark."""
+        wanted = NodeCalibration(0.47, -5.2, 0.512, 9.6, 3.3)
+        kept = keep_calibration(desk.path, wanted)
+        mark = load_bench(str(desk.path)).commissioning
+        desk.path.write_text(f'commissioned = "{mark}"\n{desk.path.read_text()}')
+        restore = ["bench", "calibrate", "bench.toml", "--restore", str(kept)]
+        monkeypatch.setattr(calibrate_command, "ask", lambda question: "n")
+        assert main(restore) == 0
+        assert node.stored == USUAL_CALIBRATION
+        assert load_bench(str(desk.path)).commissioned == mark
+        assert main([*restore, "--yes"]) == 0
+        assert node.stored is not None
+        assert node.stored.counts() == wanted.counts()
+        after = load_bench(str(desk.path))
+        assert (after.commissioned, after.bar.calibration) == ("", wanted.counts())
+
+    def test_nothing_is_put_back_while_the_drive_may_have_power(
+        self, desk: Desk, node: HandledBar, tmp_path: Path, capsys
+    ):
+        kept = keep_calibration(tmp_path / "other.toml", USUAL_CALIBRATION)
+        before = desk.path.read_text()
+        node.estop_closed = True
+        command = ["bench", "calibrate", "bench.toml", "--yes", "--restore", str(kept)]
+        assert main(command) == 2
+        assert "press the emergency stop first" in capsys.readouterr().err
+        assert desk.path.read_text() == before
 
 
 class Watched(EmulatedDrive):
@@ -181,8 +252,10 @@ class Watched(EmulatedDrive):
     def __init__(self, drive: Cia402Settings) -> None:
         super().__init__(drive.node, Motor.of_profile(drive))
         self.was: set[State] = set()
+        self.heard: set[int] = set()
 
     def receive(self, frame: Frame, time: float) -> list[Frame]:
+        self.heard.add(frame.id)
         self.was.add(self.state)
         return super().receive(frame, time)
 

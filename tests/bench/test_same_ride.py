@@ -5,20 +5,24 @@ import math
 import numpy as np
 import pytest
 
+from bikesim.bench.profile import BenchSettings
 from bikesim.experiment.run import build, ride_parts
 from bikesim.experiment.scenario import Push, Scenario
 from bikesim.rig.base import Rig
 
 from .lockstep import DRIVES, NAMES, LockStep, Rows, profile
 
-# At 1 s of ramping in, the torque of the bench is another than that of the virtual rig.
-AT_ONCE = {"ramp_in": 1e-6}
+
+def at_once(bench: BenchSettings) -> BenchSettings:
+    """At 1 s of ramping in, the torque of the bench is another than that of the virtual rig."""
+    thresholds = bench.thresholds.model_copy(update={"ramp_in": 1e-6})
+    return bench.model_copy(update={"thresholds": thresholds})
 
 
 @pytest.mark.parametrize(("kind", "duration"), [("cia402", 30.0), ("odrive", 12.0)])
 def test_the_roll_agrees_within_two_tenths_of_a_degree(kind: str, duration: float):
     pushed = Scenario(duration=duration, pushes=(Push(time=2.0, impulse=4.0),))
-    bench = LockStep(profile(DRIVES[kind], thresholds=AT_ONCE), pushed)
+    bench = LockStep(at_once(profile(DRIVES[kind])), pushed)
     assert bench.ride().reason == "end of run"
     virtual = Rows()
     ride_parts(build(bench.order.scenario), virtual)

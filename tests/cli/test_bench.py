@@ -127,7 +127,7 @@ def test_nobody_answers(cli, bench):
 def test_check_is_red_where_nobody_answers(cli, bench):
     said = cli("bench", "check", bench())
     assert said.status == 1
-    assert "RED    sensor node: frames of 0x110  0 a second" in said.out
+    assert "RED sensor node: frames of 0x110 0 a second 1000" in " ".join(said.out.split())
     assert not Path("runs").exists()
 
 
@@ -143,7 +143,7 @@ def test_never_commissioned(refusal, bench):
     changed = bench(more="").replace(".toml", "") + ".toml"
     text = Path(changed).read_text()
     Path(changed).write_text('commissioned = "0123456789ab"\n' + text)
-    assert "its bar or drive changed since" in refusal("bench", "run", changed)
+    assert "its bus, bar or drive changed since" in refusal("bench", "run", changed)
 
 
 def test_a_speed_without_margin_must_be_wanted_twice(cli, refusal, bench):
@@ -185,3 +185,23 @@ def test_an_emulated_bench_has_its_own_end_of_the_bus(cli, bench):
         assert came is not None
         assert came.arbitration_id == 0x110
         assert the_hosts.recv(0) is None
+
+
+@pytest.mark.parametrize("force", [(), ("--force",)])
+@pytest.mark.parametrize("more", [(), ("--bicycle", "own.toml"), ("--path", "own.csv")])
+def test_what_a_ride_reads_is_not_written_over(refusal, bench, more: tuple[str, ...], force):
+    name = more[1] if more else bench()
+    bench()
+    if more:
+        Path(name).write_text("mine")
+    before = Path(name).read_text()
+    run = ("bench", "run", "bench.toml", "--uncommissioned", *more, *force, "-o", name)
+    assert f"{name}: would replace what this command needs" in refusal(*run)
+    assert Path(name).read_text() == before
+
+
+def test_attempts_have_files_of_their_own(refusal, bench):
+    Path("r-3.h5").write_text("mine")
+    run = ("bench", "run", bench(), "--uncommissioned", "-o", "r.h5", "--attempts")
+    assert "r-3.h5: is already there; --force replaces it" in refusal(*run, "3")
+    assert "--attempts 0: must be 1 to 100" in refusal(*run, "0")

@@ -213,7 +213,8 @@ class EmulatedDrive:
         if not enabled or self.objects.get(0x6061) != CYCLIC_SYNCHRONOUS_TORQUE:
             return 0
         limit = self.objects.get(0x6072)
-        torque = max(-limit, min(limit, self.objects.get(0x6071)))
+        asked = self.objects.get(0x6071) + self.objects.get(0x60B2)
+        torque = max(-limit, min(limit, asked))
         too_fast = abs(self.motor.rpm(self.rate)) > self.objects.get(0x6080)
         return 0 if too_fast and torque * self.rate > 0 else torque
 

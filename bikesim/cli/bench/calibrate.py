@@ -12,7 +12,7 @@ from bikesim.cli.parsing import Flag
 from bikesim.errors import InputError
 
 if TYPE_CHECKING:
-    from bikesim.bench.calibrate import Calibrated
+    from bikesim.bench.calibrate_bench import NodeCalibrator
     from bikesim.bench.calibration import NodeCalibration
     from bikesim.bench.profile import BenchSettings
 
@@ -22,8 +22,9 @@ class Calibrate:
     """Zero, angle scale and gyro scale of this bench's steer sensors, from a few held positions.
 
     You turn the bar to each position, by a protractor on it, then swing it. With the emergency stop
-    pressed; the calibration goes into the sensor node. Of a bench whose steer is the drive's
-    encoder the zero goes into the profile, which must be a .toml file of yours.
+    pressed; the calibration goes into the sensor node, and into the profile, which must be a .toml
+    file of yours, so that no ride begins with another. Of a bench whose steer is the drive's
+    encoder the zero goes into the profile.
     """
 
     bench: BenchName
@@ -32,6 +33,9 @@ class Calibrate:
     ] = "-30,0,30"
     anew: Flag = False
     """These are other sensors than those the node was calibrated for: any scale, either sign."""
+    restore: Annotated[
+        Path | None, arg("FILE", "Measure nothing: store one that was kept (.node.DATE.bak).")
+    ] = None
     yes: Flag = False
     """Store without asking."""
 
@@ -41,40 +45,56 @@ class Calibrate:
 
         positions = parse_positions(self.positions)
         bench = load_bench(self.bench)
-        if bench.commissioned:
-            own_profile(self.bench)
+        path = own_profile(self.bench)
         if bench.bar.source == "drive":
-            return self._encoder(bench, positions)
-        return self._node(bench, positions)
+            if self.restore is not None:
+                raise InputError(
+                    f'--restore {self.restore}: bar.source = "drive", there is no sensor node'
+                )
+            return self._encoder(bench, path, positions)
+        return self._node(bench, path, positions)
 
-    def _node(self, bench: "BenchSettings", positions: list[float]) -> int:
+    def _node(self, bench: "BenchSettings", path: Path, positions: list[float]) -> int:
         from bikesim.bench.bus import close_bus
         from bikesim.bench.calibrate_bench import NodeCalibrator, on_node_bus
+        from bikesim.bench.calibration_kept import keep_calibration, kept_calibration
 
+        again = None if self.restore is None else kept_calibration(self.restore)
         bus, link = on_node_bus(bench)
         try:
             calibrator = NodeCalibrator(link, _asked)
             old = calibrator.acting
-            found = calibrator.measure(positions, anew=self.anew)
-            _tell(old, found)
+            if again is None:
+                new = self._measured(calibrator, positions)
+            else:
+                calibrator.check_unpowered()
+                new = again
+                _tell(old, new, "kept")
             if not self._agreed("store it in the sensor node"):
                 return 0
-            kept = _keep(self.bench, old)
-            # First: a mark that is missing costs a pulse, one too many a ride with a wrong sign.
-            _clear_mark(self.bench, bench)
-            calibrator.store(found.calibration)
+            kept = keep_calibration(path, old)
+            # First: a ride that is refused costs a pulse, one too many has a wrong sign.
+            _change(path, bench, {"bar.calibration": list(new.counts())})
+            calibrator.store(new)
         finally:
             close_bus(bus)
-        print(f"stored in the node; as it was: {kept}")
+        print(f"stored in the node and written to {path}; as the node was: {kept}")
         _tell_next(self.bench)
         return 0
 
-    def _encoder(self, bench: "BenchSettings", positions: list[float]) -> int:
+    def _measured(self, calibrator: "NodeCalibrator", positions: list[float]) -> "NodeCalibration":
+        found = calibrator.measure(positions, anew=self.anew)
+        _tell(calibrator.acting, found.calibration, "found")
+        print(
+            f"positions within {math.degrees(found.off_line):.2f} deg of a line; the gyro's "
+            f"integral within {100 * found.swing_misfit:.1f} % of the angle"
+        )
+        return found.calibration
+
+    def _encoder(self, bench: "BenchSettings", path: Path, positions: list[float]) -> int:
         from bikesim.bench.calibrate import encoder_zero
         from bikesim.bench.calibrate_bench import encoder_angle
-        from bikesim.bench.profile_file import change_profile, own_profile
 
-        path = own_profile(self.bench)
         held = []
         for angle in positions:
             _asked(f"turn the bar to {math.degrees(angle):+g} deg and hold it;")
@@ -83,8 +103,7 @@ class Calibrate:
         print(f"drive_zero  {zero:g} rad (profile: {bench.bar.drive_zero:g})")
         if not self._agreed(f"write it into {path}"):
             return 0
-        cleared = {"commissioned": ""} if bench.commissioned else {}
-        kept = change_profile(path, {"bar.drive_zero": zero, **cleared})
+        kept = _change(path, bench, {"bar.drive_zero": zero})
         print(f"written to {path}; as it was: {kept}")
         _tell_next(self.bench)
         return 0
@@ -96,12 +115,12 @@ class Calibrate:
         return False
 
 
-def _clear_mark(name: str, bench: "BenchSettings") -> None:
-    """Other sensors or signs: what the pulse proved is proven no more."""
-    from bikesim.bench.profile_file import change_profile, own_profile
+def _change(path: Path, bench: "BenchSettings", entries: dict[str, float | list[int]]) -> Path:
+    """In the profile; other sensors or signs: what the pulse proved is proven no more."""
+    from bikesim.bench.profile_file import change_profile
 
-    if bench.commissioned:
-        change_profile(own_profile(name), {"commissioned": ""})
+    cleared = {"commissioned": ""} if bench.commissioned else {}
+    return change_profile(path, {**entries, **cleared})
 
 
 def _tell_next(name: str) -> None:
@@ -125,8 +144,7 @@ def _asked(question: str) -> str:
     return ask(f"{question} then Enter")
 
 
-def _tell(old: "NodeCalibration", found: "Calibrated") -> None:
-    new = found.calibration
+def _tell(old: "NodeCalibration", new: "NodeCalibration", whence: str) -> None:
     rows = [
         [name, f"{getattr(old, key):.5g}", f"{getattr(new, key):.5g}", unit]
         for name, key, unit in (
@@ -136,25 +154,4 @@ def _tell(old: "NodeCalibration", found: "Calibrated") -> None:
             ("rate scale", "rate_scale", "rad/s over the range"),
         )
     ]
-    print_table(["", "in the node", "found", ""], rows, left=1)
-    print(
-        f"positions within {math.degrees(found.off_line):.2f} deg of a line; the gyro's integral "
-        f"within {100 * found.swing_misfit:.1f} % of the angle"
-    )
-
-
-def _keep(name: str, old: "NodeCalibration") -> Path:
-    """The node's calibration as it was, in a file beside the profile, or here."""
-    from bikesim.bench.profile_file import kept_beside
-
-    path = Path(name)
-    beside = path if path.suffix == ".toml" else Path(f"{path.name}.toml")
-    kept = kept_beside(beside.with_suffix(".node"))
-    lines = [f"{key} = {value!r}" for key, value in old._asdict().items()]
-    try:
-        kept.write_text(
-            "# In the sensor node before it was calibrated.\n" + "\n".join(lines) + "\n"
-        )
-    except OSError as error:
-        raise InputError(f"{kept}: {(error.strerror or str(error)).lower()}") from None
-    return kept
+    print_table(["", "in the node", whence, ""], rows, left=1)

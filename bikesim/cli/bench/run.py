@@ -100,10 +100,25 @@ class Run:
         )
         say = _to_stderr if self.json else _told
         display = DisplayProcess(self.bench, say) if self.display else nullcontext()
-        records = run_bench(
-            order, output, attempts=self.attempts, force=self.force, say=say, display=display
-        )
-        return self._end([open_run(record) for record in records])
+        ridden: list[Path] = []
+        try:
+            # One by one: what was ridden is known, whatever becomes of a later one.
+            ridden.extend(
+                run_bench(
+                    order,
+                    output,
+                    attempts=self.attempts,
+                    force=self.force,
+                    say=say,
+                    display=display,
+                )
+            )
+        except (InputError, KeyboardInterrupt):
+            # A later attempt that could not be: of those before it is told all the same.
+            if ridden:
+                self._end([open_run(record) for record in ridden])
+            raise
+        return self._end([open_run(record) for record in ridden])
 
     def _as_virtual(self) -> VirtualRun:
         return VirtualRun(
@@ -120,8 +135,11 @@ class Run:
         """What an attempt writes must not be there, nor what it reads."""
         frames = None if self.no_frames else output.with_suffix(".blf")
         picture = _picture_of(output) if self.report else None
-        check_apart(output, *filter(None, (self.scenario, frames, picture)))
-        for path in filter(None, (output, frames, picture)):
+        written = [path for path in (output, frames, picture) if path is not None]
+        read = [Path(one) for one in (self.bench, self.bicycle, self.path) if one is not None]
+        for path in written:
+            others = (one for one in written if one is not path)
+            check_apart(path, *filter(None, (self.scenario,)), *read, *others)
             check_output(path, force=self.force)
 
     def _end(self, records: "list[Record]") -> int:

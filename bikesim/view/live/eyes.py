@@ -19,13 +19,17 @@ class Eyes:
         self._past: deque[Pose] = deque()
 
     def see(self, pose: Pose) -> Pose | None:
-        """Of poses whose times do not fall."""
+        """Of poses whose times do not fall, but where a bicycle begins anew."""
+        if self._past and pose.time < self._past[-1].time:
+            self._past.clear()
         shown = self._late(pose) if self._delay else pose
         dark = any(first <= shown.time < last for first, last in self._occlusions)
         return None if dark else shown
 
     def _late(self, pose: Pose) -> Pose:
         past, time = self._past, pose.time - self._delay
+        if past and past[-1].time == pose.time:
+            past.pop()
         past.append(pose)
         # One at or before the time is kept, of which and the next the pose is made.
         while len(past) > 1 and past[1].time <= time:

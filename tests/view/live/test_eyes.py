@@ -32,6 +32,20 @@ def test_before_the_delay_is_over_the_first_pose_stands():
         assert eyes.see(pose(time)) == pose(0.0)
 
 
+def test_a_bicycle_that_begins_anew_is_seen_from_its_beginning():
+    """After a fall: not the last of what was, until the time has come so far again."""
+    eyes = Eyes(0.2, ())
+    for k in range(100):
+        eyes.see(pose(10.0 + 0.01 * k))
+    for _ in range(100):
+        assert eyes.see(pose(0.0)) == pose(0.0)
+    for k in range(1, 100):
+        shown = eyes.see(pose(0.01 * k))
+        assert shown is not None
+        assert shown.time == pytest.approx(max(0.0, 0.01 * k - 0.2))
+    assert len(eyes._past) < 30
+
+
 def test_it_is_dark_from_the_first_to_before_the_last_time():
     eyes = Eyes(0.0, ((1.0, 2.0), (3.0, 3.5)))
     times = [0.9, 1.0, 1.99, 2.0, 2.9, 3.0, 3.49, 3.5]
