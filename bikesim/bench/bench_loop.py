@@ -22,6 +22,10 @@ def bench_loop(
         bar.inertia,
         period=bench.period,
         delay=bar.delay,
+        motor_lag=bar.drive_lag,
+        sensor_interval=bar.sensor_interval,
+        filter_cutoff=bar.filter_cutoff,
+        filter_order=bar.filter_order,
         viscous_friction=bar.viscous_friction,
     )
     share = bar.coupling if coupling is None else coupling
@@ -40,13 +44,12 @@ def cued_loops(loop: SampledLoop, haptics: HapticsSettings) -> Iterator[SampledL
     scales = {min(max(scale, 0.0), 1.0) for scale in _scales(haptics)}
     # Without torque nothing can shake: of several that one is never the worst.
     for scale in sorted(scales - {0.0} or {0.0}):
-        yield replace(
-            loop,
-            delay=min(cued_delay(loop, haptics), MOST_DELAY),
-            filter_cutoff=haptics.filter_cutoff,
-            filter_order=haptics.filter_order,
-            scale=scale,
-        )
+        cued = replace(loop, delay=min(cued_delay(loop, haptics), MOST_DELAY), scale=scale)
+        if haptics.filter_cutoff is not None:
+            cued = replace(
+                cued, filter_cutoff=haptics.filter_cutoff, filter_order=haptics.filter_order
+            )
+        yield cued
 
 
 def not_judged(loop: SampledLoop, haptics: HapticsSettings) -> str:
@@ -55,6 +58,8 @@ def not_judged(loop: SampledLoop, haptics: HapticsSettings) -> str:
         if not 0.0 <= scale <= 1.0:
             why = "reverses the torque" if scale < 0 else "gives more torque than the law"
             return f"haptics: a scale of {scale:g} {why}; with hands on a bar it is to be 0 to 1"
+    if haptics.filter_cutoff is not None and loop.filter_cutoff is not None:
+        return "haptics.filter_cutoff and bar.filter_cutoff: two filters at once are not judged"
     delay = cued_delay(loop, haptics)
     if delay > MOST_DELAY + 1e-9:
         return (

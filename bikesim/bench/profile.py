@@ -39,6 +39,21 @@ class BarSettings(Settings):
     delay: Annotated[float, Field(ge=0, le=0.5)] = Field(
         description="From the bar's motion to torque, all in all [s]; bench identify measures it."
     )
+    filter_cutoff: Annotated[float, Field(ge=1, le=1e5)] | None = Field(
+        default=None,
+        description="Of the sensor node's low pass [rad/s], -3 dB, where delay does not contain it.",
+    )
+    filter_order: Annotated[int, Field(ge=1, le=4)] = Field(
+        default=2, description="Of that low pass (Butterworth)."
+    )
+    drive_lag: Annotated[float, Field(ge=0, le=0.05)] = Field(
+        default=0.0,
+        description="From the torque told to that given, a time constant [s], where delay does not "
+        "contain it.",
+    )
+    sensor_interval: Annotated[float, Field(ge=0, le=0.05)] = Field(
+        default=0.0, description="Between two sensor values [s], where longer than the period."
+    )
     source: Literal["node", "drive"] = Field(
         default="node", description="Of steer angle and rate: the sensor node, or the drive."
     )

@@ -1,5 +1,6 @@
 """What is judged of a ride before anything is sent: the loop with the haptic cue in it."""
 
+import math
 from typing import Any
 
 import pytest
@@ -112,3 +113,29 @@ def test_what_is_not_watched_without_a_sensor_node():
     said = line(ready({"source": "drive"}), "NOT")
     assert "rows 2 to 6 and 21 of the faults" in said
     assert "without a second sensor; the host does not see the emergency stop" in said
+
+
+@pytest.mark.parametrize(
+    ("lag", "takes"),
+    [
+        # A slow motion sees each as a delay: order 2 of a low pass √2/ω, a lag itself, a sensor
+        # every n periods (n - 1)/2 of them.
+        ({"filter_cutoff": 400.0}, math.sqrt(2) / 400),
+        ({"filter_cutoff": 400.0, "filter_order": 1}, 1 / 400),
+        ({"drive_lag": 0.004}, 0.004),
+        ({"sensor_interval": 0.005}, 0.002),
+    ],
+    ids=str,
+)
+def test_what_the_bar_knows_late_costs_margin(lag: dict, takes: float):
+    bar = {"inertia": 0.2311, "delay": 0.002}
+    without, found = ready(bar, speed=5.0).worst, ready(bar | lag, speed=5.0).worst
+    assert without.delay_margin - found.delay_margin == pytest.approx(takes, rel=0.35)
+
+
+def test_two_filters_at_once_are_to_be_wanted_twice():
+    bar = {"inertia": 0.2311, "delay": 0.002, "filter_cutoff": 400.0}
+    found = ready(bar, speed=5.0, haptics={"filter_cutoff": 300.0})
+    with pytest.raises(InputError, match="two filters at once are not judged"):
+        check_margins(found, told=0)
+    check_margins(found, told=2)
