@@ -41,7 +41,7 @@ class BarSettings(Settings):
     )
     filter_cutoff: Annotated[float, Field(ge=1, le=1e5)] | None = Field(
         default=None,
-        description="Of the sensor node's low pass [rad/s], -3 dB, where delay does not contain it.",
+        description="Of the node's low pass [rad/s], -3 dB, where delay does not contain it.",
     )
     filter_order: Annotated[int, Field(ge=1, le=4)] = Field(
         default=2, description="Of that low pass (Butterworth)."
