@@ -124,6 +124,15 @@ def zero_at_once(seen: Ridden, after: float = 0.0) -> None:
     assert abs(seen.run().channel("sent_torque")[-2]) > 0.05
 
 
+def zero_when_seen(seen: Ridden, row: int) -> None:
+    """R3, whatever torque there was: the tick that saw it is the last, and sends none."""
+    run = seen.run()
+    first = float(run.time[run.channel("fault") == row][0])
+    assert run.time[-1] == first > AT
+    assert run.channel("sent_torque")[-1] == 0.0
+    assert seen.zero_after - first <= ROOM + seen.behind < RAMP_OUT
+
+
 def let_go_by_itself(seen: Ridden) -> None:
     """The drive: not sooner than its watchdog says, which was fed a quarter of that before."""
     rode(seen)
@@ -182,10 +191,12 @@ class TestSensors:
             "push", value=3.0, thresholds={"soft_stop_deg": 15.0, "trip_angle_deg": 20.0}
         )
         named(seen, 8, r"steer angle 2\d\.\d deg")
+        zero_when_seen(seen, 8)
 
     def test_row_9(self, rides: Rides):
         seen = rides.with_mishap("push", value=10.0, thresholds={"trip_rate": 2.0})
         named(seen, 9, r"steer rate [23]\.\d rad/s for 2 ms")
+        zero_when_seen(seen, 9)
 
 
 class TestTorque:
