@@ -21,7 +21,7 @@ run: $(READY)
 
 test: $(READY)
 	@bash scripts/apt.sh $(SCREEN) || echo "test: without them the tests of the live display fail" >&2
-	$(PY) -m pytest --numprocesses auto --maxprocesses 4 --dist loadgroup \
+	$(PY) -m pytest --numprocesses auto --maxprocesses 4 --dist loadscope \
 		--no-loadscope-reorder $(ARGS)
 
 check: lint types
