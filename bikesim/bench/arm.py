@@ -8,6 +8,7 @@ from bikesim.bench.drive import Drive
 from bikesim.bench.faults import Fault, Observation, Reaction, Thresholds
 from bikesim.bench.frame import from_message
 from bikesim.bench.monitors import monitors
+from bikesim.bench.rest_torque import check_rest_torque
 from bikesim.bench.rig import BenchRig
 from bikesim.bench.senses import Bar
 from bikesim.bench.traffic import Traffic
@@ -106,11 +107,7 @@ class _Arming:
             raise InputError(f"fault 20: {o.bus_trouble}")
         if not o.estop_closed:
             raise InputError(_STOP_OPEN)
-        if not abs(o.torque_measured) <= self._thresholds.rest_torque:
-            raise InputError(
-                f"fault 25: the drive measures {o.torque_measured:+.2f} N m before it is told any; "
-                f"allowed {self._thresholds.rest_torque:g} N m"
-            )
+        check_rest_torque(o.torque_measured, self._thresholds.rest_torque)
         self._rig.command(0.0)
         self._rig.wait()
         return o

@@ -6,14 +6,14 @@ from bikesim.errors import InputError
 _ALLOWED: float = Thresholds.model_fields["rest_torque"].default  # N m at the steer axis
 
 
-def check_rest_torque(torque: float) -> None:
+def check_rest_torque(torque: float, allowed: float = _ALLOWED) -> None:
     """For a torque [N m] at the steer axis, as a drive that is told none measures it.
 
-    Raises InputError where it is more than the default of the threshold `rest_torque`: a set-up
-    knows of no other.
+    Raises InputError where it is more than `allowed` [N m], the threshold `rest_torque`; a set-up
+    knows of its default only.
     """
-    if not abs(torque) <= _ALLOWED:
+    if not abs(torque) <= allowed:
         raise InputError(
             f"fault 25: the drive measures {torque:+.2f} N m before it is told any; "
-            f"allowed {_ALLOWED:g} N m"
+            f"allowed {allowed:g} N m"
         )

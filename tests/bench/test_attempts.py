@@ -18,6 +18,7 @@ from bikesim.bench.attempts import Warmth, run_bench
 from bikesim.bench.plant import Plant
 from bikesim.bench.ride import Order, Ridden
 from bikesim.bench.scenario import bench_scenario
+from bikesim.bench.stopping import Stopping
 from bikesim.record.header import Ending
 from bikesim.record.reader import open_run
 
@@ -102,6 +103,15 @@ def test_who_wanted_it_to_stop_is_not_made_to_ride_again(monkeypatch: pytest.Mon
     made = rides(monkeypatch, FELL, FELL)
     made.stopped = True
     assert list(run_bench(order(), Path("r.h5"), attempts=2, say=quiet)) == [Path("r.h5")]
+
+
+def test_that_somebody_wanted_it_to_stop_is_remembered():
+    told: list[str] = []
+    stopping = Stopping(told.append)
+    assert not stopping.asked
+    stopping.on_signal(signal.SIGTERM, None)
+    assert stopping.asked
+    assert told == ["interrupted"]
 
 
 def test_unasked_there_is_one(monkeypatch: pytest.MonkeyPatch):
